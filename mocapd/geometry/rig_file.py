@@ -66,7 +66,7 @@ def camera_from_dict(entry: Any, where: str) -> Camera:
         raise ConfigError(
             "'R' mirrors (its determinant is -1): the rig is of a left-handed world",
             where,
-            "flip the sign of one column of R in all cameras: x points left for a person facing +z, y points up",
+            "flip the sign of one column of R in all cameras, so that x is to the left of a person facing +z, and y up",
         )
     return Camera(
         name=name,

@@ -71,7 +71,7 @@ def setup_of(
     draft: Draft, when: datetime, done: Collection[StepName]
 ) -> tuple[SavedCalibration, dict[str, LabelledPicture]]:
     """The same of a setup in progress, with the board data that it still needs."""
-    cameras = tuple(_with_measurements(draft, _camera(draft, one)) for one in draft.cameras)
+    cameras = tuple(_with_measurements(draft, _camera(draft, camera)) for camera in draft.cameras)
     return _tables(draft, cameras, when, SavedSetup(done=tuple(sorted(done))))
 
 
@@ -95,18 +95,27 @@ def draft_of(saved: SavedCalibration, path: Path) -> Draft:
     }
     return Draft(
         cameras=tuple(
-            DraftCamera(one.id, one.source, one.size_px, one.fps_hz, one.controls, one.label)
-            for one in saved.camera
+            DraftCamera(
+                camera.id,
+                camera.source,
+                camera.size_px,
+                camera.fps_hz,
+                camera.controls,
+                camera.label,
+            )
+            for camera in saved.camera
         ),
         board=saved.board,
         board_views={
-            one.id: {view.index: _view(view, saved.board, path) for view in one.board_view}
-            for one in saved.camera
-            if one.board_view
+            camera.id: {view.index: _view(view, saved.board, path) for view in camera.board_view}
+            for camera in saved.camera
+            if camera.board_view
         },
         intrinsics=intrinsics,
         intrinsics_saved=frozenset(
-            one.id for one in saved.camera if one.lens is not None and one.lens.from_earlier
+            camera.id
+            for camera in saved.camera
+            if camera.lens is not None and camera.lens.from_earlier
         ),
         rig=calibration.rig,
         extrinsics_quality=None
@@ -114,14 +123,14 @@ def draft_of(saved: SavedCalibration, path: Path) -> Draft:
         else ExtrinsicsQuality(
             room.method,
             nan_of(room.rms_px),
-            {one.id: nan_of(one.rms_px) for one in saved.camera},
+            {camera.id: nan_of(camera.rms_px) for camera in saved.camera},
             nan_of(room.play_area_cm),
         ),
         floor_known=room is not None and room.floor_known,
         colours={
-            one.id: DraftColours(shirt.white_balance[one.id], np.array(one.colour.W))
-            for one in saved.camera
-            if one.colour is not None
+            camera.id: DraftColours(shirt.white_balance[camera.id], np.array(camera.colour.W))
+            for camera in saved.camera
+            if camera.colour is not None
         },
         personal=saved.wearer is not None and saved.wearer.personal_colours,
         stature_m=calibration.wearer.stature_m,
@@ -134,8 +143,8 @@ def calibration_of(draft: Draft) -> Calibration:
     """The draft as a calibration record, equal to the saved one. Raises InputError without a room."""
     if draft.rig is None:
         raise InputError("the room is not calibrated", "room", "do that step first")
-    pictures = {name: one.picture for name, one in draft.colours.items()}
-    W = {name: one.W for name, one in draft.colours.items()}
+    pictures = {name: colours.picture for name, colours in draft.colours.items()}
+    W = {name: colours.W for name, colours in draft.colours.items()}
     return Calibration(
         draft.rig,
         Wearer(draft.stature_m, draft.factors, draft.has_shirt),
@@ -162,7 +171,7 @@ def _tables(
         board=draft.board,
         setup=setup,
         camera=cameras,
-    ), {name: one.picture for name, one in draft.colours.items()}
+    ), {name: colours.picture for name, colours in draft.colours.items()}
 
 
 def _camera(draft: Draft, camera: DraftCamera) -> SavedCamera:

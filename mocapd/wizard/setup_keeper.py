@@ -61,7 +61,7 @@ class SetupKeeper:
     def resume(self) -> UnfinishedSetup:
         """The unfinished setup, with its controls set in the cameras. Raises InputError without one."""
         unfinished, self.offer = self._require_offer(), None
-        opened = {one.id: one for one in self._opened}
+        opened = {camera.id: camera for camera in self._opened}
         there = tuple(replace(c, source=opened[c.id].source) for c in unfinished.draft.cameras)
         draft = replace(unfinished.draft, cameras=there)
         draft = with_cameras(draft, tuple(self._as_open(c, opened[c.id]) for c in there))
@@ -77,7 +77,7 @@ class SetupKeeper:
 
     def _require_offer(self) -> UnfinishedSetup:
         if self.offer is None:
-            raise InputError("no setup of before is unfinished", "the page", "reload the page")
+            raise InputError("there is no unfinished setup", "the page", "reload the page")
         return self.offer
 
     def _as_open(self, camera: DraftCamera, opened: DraftCamera) -> DraftCamera:
@@ -179,10 +179,10 @@ class SetupKeeper:
 
     def _why_not(self, unfinished: UnfinishedSetup) -> str:
         """Why it is not offered; empty when it is."""
-        opened = {one.id: without_password(one.source) for one in self._opened}
+        opened = {camera.id: without_password(camera.source) for camera in self._opened}
         if self._now() - unfinished.when > FORGOTTEN:
             return f"it is of {unfinished.when:%Y-%m-%d}"
-        if any(opened.get(one.id) != one.source for one in unfinished.draft.cameras):
+        if any(opened.get(camera.id) != camera.source for camera in unfinished.draft.cameras):
             return "it is of other cameras"
         return ""
 
@@ -194,8 +194,8 @@ def unfinished_cameras(state_dir: Path, saved: Sequence[DraftCamera]) -> tuple[D
         unfinished = read_draft(state_dir / FILE_NAME).draft.cameras
     except MocapdError:  # none, or one that is not offered
         return tuple(saved)
-    ids, sources = {one.id for one in unfinished}, {one.source for one in unfinished}
-    rest = (one for one in saved if one.id not in ids and one.source not in sources)
+    ids, sources = {camera.id for camera in unfinished}, {camera.source for camera in unfinished}
+    rest = (camera for camera in saved if camera.id not in ids and camera.source not in sources)
     return (*unfinished, *rest)
 
 
@@ -208,6 +208,9 @@ def has_news(draft: Draft, begun: Draft) -> bool:
             one is not None and one is not before
             for one, before in ((draft.rig, begun.rig), (draft.factors, begun.factors))
         )
-        or any(one is not begun.intrinsics.get(name) for name, one in draft.intrinsics.items())
-        or any(one is not begun.colours.get(name) for name, one in draft.colours.items())
+        or any(
+            intrinsics is not begun.intrinsics.get(name)
+            for name, intrinsics in draft.intrinsics.items()
+        )
+        or any(colours is not begun.colours.get(name) for name, colours in draft.colours.items())
     )

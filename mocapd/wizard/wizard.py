@@ -269,9 +269,7 @@ class Wizard:
 
     def _require_keeper(self) -> SetupKeeper:
         if self._keeper is None:
-            raise InputError(
-                "this setup cannot be continued later", "this setup", "reload the page"
-            )
+            raise InputError("there is no unfinished setup", "this setup", "reload the page")
         return self._keeper
 
     def _show(self, name: StepName) -> None:

@@ -196,4 +196,4 @@ def test_where_nothing_can_be_written_the_setup_goes_on(
     run.after("find")
     run.after("go", step="room")
     run.stop()
-    assert caplog.text.count("the setup in progress is not kept") == 1
+    assert caplog.text.count("the setup in progress cannot be stored") == 1

@@ -76,8 +76,8 @@ def _mean(views: list[BoardView], index: int) -> BoardView:
     ids, counts = np.unique(np.concatenate([view.ids for view in views]), return_counts=True)
     ids = ids[2 * counts >= len(views)]
     rows = [
-        np.stack([view.corners_px[view.ids == one][0] for view in views if one in view.ids])
-        for one in ids
+        np.stack([view.corners_px[view.ids == corner][0] for view in views if corner in view.ids])
+        for corner in ids
     ]
     corners_px = np.stack([row.mean(axis=0) for row in rows])
     return replace(views[-1], index=index, ids=ids, corners_px=corners_px)

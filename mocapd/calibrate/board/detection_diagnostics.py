@@ -55,7 +55,7 @@ def most_telling(failures: Sequence[DetectionFailure]) -> DetectionFailure:
 
     Of the failures with that reason the one with the most visible markers, of these the first.
     """
-    counts = Counter(one.reason for one in failures)
+    counts = Counter(failure.reason for failure in failures)
 
     def rank(one: DetectionFailure) -> tuple[int, int, int]:
         is_part = one.reason is Reason.FEW and one.markers >= _CERTAIN

@@ -85,7 +85,7 @@ def room_features(picture: Bytes, params: PlacesParams) -> RoomFeatures:
     rows: Any = described
     if rows is None:
         rows = np.empty((0, 128), np.float32)
-    return RoomFeatures(np.array([one.pt for one in points]).reshape(-1, 2), rows)
+    return RoomFeatures(np.array([point.pt for point in points]).reshape(-1, 2), rows)
 
 
 def matching_points(

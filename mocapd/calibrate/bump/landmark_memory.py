@@ -38,7 +38,7 @@ class LandmarkMemory:
     @property
     def views(self) -> list[Landmarks]:
         """All views, the earliest first; at most four once this run has one of its own."""
-        return [*self._other[:1], *(one.marks for one in self._turned), *self._other[1:]]
+        return [*self._other[:1], *(view.marks for view in self._turned), *self._other[1:]]
 
     @property
     def has_begun(self) -> bool:

@@ -50,7 +50,7 @@ def lookalikes(
         for colour in range(1, len(model.names) + 1)
         for polygon, area in _regions((ids == colour).astype(np.uint8), least_share * h * w)
     ]
-    return tuple(sorted(found, key=lambda one: -one.area_px))
+    return tuple(sorted(found, key=lambda lookalike: -lookalike.area_px))
 
 
 def colours_alone(
@@ -80,7 +80,9 @@ def lookalike_warning(found: tuple[Lookalike, ...], size_px: tuple[int, int]) ->
     """One sentence for the user, or "" for no lookalikes; size_px: width and height."""
     if not found:
         return ""
-    places = [f"{one.name} ({_place(one.polygon_px, size_px)})" for one in found[:5]]
+    places = [
+        f"{lookalike.name} ({_place(lookalike.polygon_px, size_px)})" for lookalike in found[:5]
+    ]
     more = f" and {len(found) - 5} smaller ones" if len(found) > 5 else ""
     return (
         f"these things behind you have the shirt's colours: {', '.join(places)}{more}"

@@ -61,7 +61,9 @@ class CheckResult:
     @property
     def late_s(self) -> dict[str, float]:
         """By camera, how much later its times are than given [s], for those that are certainly wrong."""
-        return {one.cameras[0]: one.late_s for one in self.findings if one.is_mended}
+        return {
+            finding.cameras[0]: finding.late_s for finding in self.findings if finding.is_mended
+        }
 
 
 @dataclass(slots=True, eq=False)
@@ -122,53 +124,61 @@ class CaptureCheck:
     @property
     def has_enough(self) -> bool:
         """Whether more pictures would add little."""
-        there = [one for one in self._buffers.values() if one.frames > 1]
+        there = [buffer for buffer in self._buffers.values() if buffer.frames > 1]
         if not there:
             return False
-        return min(_moving_s(one.meter) for one in there) >= _ENOUGH_S
+        return min(_moving_s(buffer.meter) for buffer in there) >= _ENOUGH_S
 
     def result(self) -> CheckResult:
         """The findings in the pictures so far: takes a second or two."""
-        there = [one for one in self._buffers.values() if len(one.pictures) > 10]
+        there = [buffer for buffer in self._buffers.values() if len(buffer.pictures) > 10]
         if not there:
             return CheckResult()
-        cameras = [one.camera for one in there]
-        times = judge_times([_timing(one) for one in there])
+        cameras = [buffer.camera for buffer in there]
+        times = judge_times([_timing(buffer) for buffer in there])
         late = times.findings
-        late_s = {one.cameras[0]: one.late_s for one in late if one.is_mended}
-        stretches = self._stretches(there, [late_s.get(one.name, 0.0) for one in cameras])
+        late_s = {finding.cameras[0]: finding.late_s for finding in late if finding.is_mended}
+        stretches = self._stretches(there, [late_s.get(camera.name, 0.0) for camera in cameras])
         names = tuple(camera.name for camera in cameras)
         turned = turned_views(
             cameras,
-            [[view for one in stretches for view in one[i][:1]] for i in range(len(cameras))],
+            [
+                [view for stretch in stretches for view in stretch[i][:1]]
+                for i in range(len(cameras))
+            ],
         )
         if len(cameras) == 1:
             return CheckResult(
                 turned,
                 _OFF_M[Mistake.TURNED] if turned else 0.0,
-                sum(1 for one in stretches if one[0]),
+                sum(1 for stretch in stretches if stretch[0]),
             )
         verdict = judge(cameras, stretches, times.moves_alike)
-        pictures = [one.newest for one in there]
+        pictures = [buffer.newest for buffer in there]
         findings = with_the_room(cameras, pictures, verdict.findings)
         if not findings and (scaled := scaled_findings(cameras, stretches)):
             findings = with_the_room(cameras, pictures, scaled)
         if not findings and not all(times.moves_alike):
             # cameras at their places with other times
             findings = tuple(
-                one for one in verdict.findings if one.mistake is Mistake.CONTRADICTION
+                finding for finding in verdict.findings if finding.mistake is Mistake.CONTRADICTION
             )
-        if any(not one.is_mended for one in late):
+        if any(not finding.is_mended for finding in late):
             # views at different instants contradict each other for that reason alone
-            findings = tuple(one for one in findings if one.mistake not in _BY_TIME)
+            findings = tuple(finding for finding in findings if finding.mistake not in _BY_TIME)
         if not findings:
             findings = judge_world(names, verdict.fits, self._stature_m)
         if turned and not any(
-            one.mistake in (Mistake.TURNED, Mistake.AXES, Mistake.INVERTED) for one in findings
+            finding.mistake in (Mistake.TURNED, Mistake.AXES, Mistake.INVERTED)
+            for finding in findings
         ):
             findings = (*turned, *findings)
         off_m = max(
-            (_OFF_M.get(one.mistake, 0.0) for one in (*late, *findings) if not one.is_mended),
+            (
+                _OFF_M.get(finding.mistake, 0.0)
+                for finding in (*late, *findings)
+                if not finding.is_mended
+            ),
             default=0.0,
         )
         return CheckResult(
@@ -177,24 +187,24 @@ class CaptureCheck:
 
     def _stretches(self, there: Sequence[_CameraBuffer], late_s: Sequence[float]) -> list[Stretch]:
         """The people in the stretches of time with most motion, at corrected times."""
-        begin = max(one.times_s[0] + late for one, late in zip(there, late_s, strict=True))
-        end = min(one.times_s[-1] + late for one, late in zip(there, late_s, strict=True))
+        begin = max(buffer.times_s[0] + late for buffer, late in zip(there, late_s, strict=True))
+        end = min(buffer.times_s[-1] + late for buffer, late in zip(there, late_s, strict=True))
         count = max(1, int((end - begin) / _STRETCH_S))
         edges = end - _STRETCH_S * np.arange(count, -1, -1)
         moved = [
             sum(
-                _motion_between(one.meter, low - late, high - late)
-                for one, late in zip(there, late_s, strict=True)
+                _motion_between(buffer.meter, low - late, high - late)
+                for buffer, late in zip(there, late_s, strict=True)
             )
             for low, high in pairwise(edges)
         ]
         chosen = sorted(np.argsort(moved)[::-1][:_STRETCHES])
         finder = PersonFinder()
         works = [
-            WorkPictures(np.array(one.times_s), np.stack(one.pictures), one.smaller)
-            for one in there
+            WorkPictures(np.array(buffer.times_s), np.stack(buffer.pictures), buffer.smaller)
+            for buffer in there
         ]
-        rooms = [RoomsByLight(one) for one in works]
+        rooms = [RoomsByLight(work) for work in works]
         turns: list[Sequence[int]] = [range(4)] * len(there)
         out: list[Stretch] = []
         for k in chosen:
@@ -204,7 +214,7 @@ class CaptureCheck:
                 views = _people(finder, work, rooms[i], (low, high), turns[i])
                 if views:
                     turns[i] = tuple({0, views[0].quarter_turns})
-                people.append([replace(one, times_s=one.times_s + late) for one in views])
+                people.append([replace(view, times_s=view.times_s + late) for view in views])
             out.append(people)
         return out
 

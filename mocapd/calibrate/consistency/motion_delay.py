@@ -158,15 +158,15 @@ def _largest_group(weights: Floats) -> np.ndarray:
 def _pair_blocks(signals: Sequence[MotionSignal]) -> tuple[Floats, Floats] | None:
     """Lags (L,) [s] and (N,N,L,B): the contribution of each block of time to the correlation of camera i, late by each
     lag, with camera j."""
-    if len(signals) < 2 or any(len(one.times_s) < 10 for one in signals):
+    if len(signals) < 2 or any(len(signal.times_s) < 10 for signal in signals):
         return None
-    begin = max(float(one.times_s[0]) for one in signals)
-    end = min(float(one.times_s[-1]) for one in signals)
+    begin = max(float(signal.times_s[0]) for signal in signals)
+    end = min(float(signal.times_s[-1]) for signal in signals)
     most_s = float(np.clip(_MOST_SHARE * (end - begin), *_MOST_S))
     if end - begin - 2.0 * most_s < _LEAST_S:
         return None
     grid_s = np.arange(begin, end, _GRID_S)
-    banded = [_band(np.interp(grid_s, one.times_s, one.change)) for one in signals]
+    banded = [_band(np.interp(grid_s, signal.times_s, signal.change)) for signal in signals]
     n = round(most_s / _GRID_S)
     inner = len(grid_s) - 2 * n
     cuts = np.linspace(0, inner, _BLOCKS + 1).astype(int)[:-1]

@@ -125,7 +125,7 @@ class PersonFinder:
     ) -> PersonView | None:
         count, joints = len(work.pictures), len(BODY_JOINTS)
         best = min(
-            (self._begin(work, room, box, turn) for turn in turns), key=lambda one: one.spread
+            (self._begin(work, room, box, turn) for turn in turns), key=lambda start: start.spread
         )
         if best.spread > _LOOSE_CELLS:
             return None
@@ -203,13 +203,13 @@ class RoomsByLight:
 
     def __init__(self, work: WorkPictures) -> None:
         self._work = work
-        self._light = np.log([float(one[::4, ::4].mean()) + 4.0 for one in work.pictures])
+        self._light = np.log([float(picture[::4, ::4].mean()) + 4.0 for picture in work.pictures])
         self._rooms: dict[int, ViewedRoom] = {}
 
     def during(self, part: WorkPictures) -> ViewedRoom:
         """The background in the light of a few seconds of the same pictures."""
         light = float(
-            np.median(np.log([float(one[::4, ::4].mean()) + 4.0 for one in part.pictures]))
+            np.median(np.log([float(picture[::4, ::4].mean()) + 4.0 for picture in part.pictures]))
         )
         alike = np.abs(self._light - light) < _SAME_LIGHT
         if alike.sum() < _ROOM_PICTURES:
@@ -234,7 +234,7 @@ def candidates(work: WorkPictures, room: ViewedRoom) -> list[Ints]:
         moves = (np.ptp(near, axis=0).max(axis=-1) > 2 * _DIFFERS).astype(np.uint8)
         for mask, worth in ((differs, 1.0), (moves, 0.8)):
             out += [(worth * area, np.array([f, *box])) for area, box in _pieces(mask)]
-    out.sort(key=lambda one: -one[0])
+    out.sort(key=lambda candidate: -candidate[0])
     distinct: list[Ints] = []
     for _, box in out:
         if all(_overlap(box, other) < 0.3 for other in distinct):
@@ -261,7 +261,7 @@ def _pieces(mask: Bytes) -> list[tuple[float, Ints]]:
     mask = np.asarray(cv2.morphologyEx(mask, cv2.MORPH_CLOSE, np.ones((11, 7), np.uint8)), np.uint8)
     _, _, stats, _ = cv2.connectedComponentsWithStats(mask)
     least = 0.004 * mask.size
-    return [(float(one[4]), np.asarray(one[:4])) for one in stats[1:] if one[4] > least]
+    return [(float(row[4]), np.asarray(row[:4])) for row in stats[1:] if row[4] > least]
 
 
 def _overlap(a: Ints, b: Ints) -> float:

@@ -50,7 +50,7 @@ def judge(
 ) -> RigVerdict:
     """Checks given cameras against their views. No finding where they have too little in common. moves_alike: by
     camera, whether its motion coincides with the others'; all do by default."""
-    table = _Table([[[thin_view(one) for one in views] for views in part] for part in stretches])
+    table = _Table([[[thin_view(view) for view in views] for views in part] for part in stretches])
     given = table.fits(as_given(cameras))
     if not given:
         return RigVerdict((), ())
@@ -135,13 +135,13 @@ def _best_zoom(
         found.append((finer, more) if finer is not None and more > brought else (zoom, brought))
     if not found:
         return None
-    best, most = max(found, key=lambda one: one[1])
-    rivals = [one for one, brought in found if brought > _RIVAL * most and one is not best]
+    best, most = max(found, key=lambda entry: entry[1])
+    rivals = [zoom for zoom, brought in found if brought > _RIVAL * most and zoom is not best]
     if not rivals:
         return best, most
-    affected = tuple(sorted({best.affected[0], *(one.affected[0] for one in rivals)}))
+    affected = tuple(sorted({best.affected[0], *(rival.affected[0] for rival in rivals)}))
     return replace(
-        best, affected=affected, what="; or ".join(one.what for one in (best, *rivals))
+        best, affected=affected, what="; or ".join(zoom.what for zoom in (best, *rivals))
     ), most
 
 
@@ -149,10 +149,10 @@ def _best_of(
     some: Iterable[Hypothesis], table: _Table, given: Mapping[_Pair, PairFit]
 ) -> tuple[Hypothesis | None, float]:
     best, most = None, 0.0
-    for one in some:
-        gain = _gain(one, table.fits(one, given), given, _ZOOM_GAIN)
+    for hypothesis in some:
+        gain = _gain(hypothesis, table.fits(hypothesis, given), given, _ZOOM_GAIN)
         if gain > most:
-            best, most = one, gain
+            best, most = hypothesis, gain
     return best, most
 
 

@@ -25,9 +25,9 @@ def with_the_room(
 
     pictures (h,w,3) BGR: each camera's at one time, None where there is none.
     """
-    concerned = {name for one in findings for name in one.cameras}
+    concerned = {name for finding in findings for name in finding.cameras}
     params = PlacesParams()
-    features = [None if one is None else room_features(one, params) for one in pictures]
+    features = [None if picture is None else room_features(picture, params) for picture in pictures]
     out = list(findings)
     worst: tuple[RoomVerdict, tuple[str, str]] | None = None
     for i, j in combinations(range(len(cameras)), 2):

@@ -76,7 +76,7 @@ def judge_room(cameras: tuple[Camera, Camera], px: tuple[Floats, Floats]) -> Roo
     free = _fitting_anything(px)
     found = [_best_change(cameras, px, i, flip) for i in (0, 1) for flip in (1.0, -1.0)]
     found += [_best_scale(cameras, px, scaled) for scaled in ((0,), (1,), (0, 1))]
-    sure = [one for one in found if _is_sure(one, matches, given)]
+    sure = [change for change in found if _is_sure(change, matches, given)]
     return RoomVerdict(matches, given, free, _likeliest(sure) if sure else None)
 
 
@@ -96,15 +96,15 @@ def _is_sure(change: PictureChange, matches: int, given: int) -> bool:
 
 def _likeliest(found: Sequence[PictureChange]) -> PictureChange | None:
     """The change with most matches, of those near it the simplest; names all cameras that may have it."""
-    most = max(one.count for one in found)
-    near = [one for one in found if one.count >= _AS_WELL * most]
-    plain = [one for one in near if not one.is_mirrored and not one.is_turned] or near
-    best = max(plain, key=lambda one: (one.is_central, one.count))
+    most = max(change.count for change in found)
+    near = [change for change in found if change.count >= _AS_WELL * most]
+    plain = [change for change in near if not change.is_mirrored and not change.is_turned] or near
+    best = max(plain, key=lambda change: (change.is_central, change.count))
     alike = {
         i
-        for one in plain
-        if one.is_mirrored == best.is_mirrored and one.is_turned == best.is_turned
-        for i in one.cameras
+        for change in plain
+        if change.is_mirrored == best.is_mirrored and change.is_turned == best.is_turned
+        for i in change.cameras
     }
     return replace(best, cameras=tuple(sorted(alike)))
 

@@ -45,13 +45,13 @@ class TimeVerdict:
 
 def judge_times(cameras: Sequence[CameraTiming]) -> TimeVerdict:
     """Findings of each camera whose times are certainly early or late, or have a jump."""
-    delays = camera_delays([one.signal for one in cameras])
+    delays = camera_delays([camera.signal for camera in cameras])
     jumps = _jumps(cameras)
     rate = None if any(jumps) else _wrong_rate(cameras, delays)
     if rate is not None:
         return TimeVerdict((rate,), (True,) * len(cameras))
     findings = _late_findings(cameras, delays, jumps)
-    concerned = {name for one in findings for name in one.cameras}
+    concerned = {name for finding in findings for name in finding.cameras}
     alike = tuple(
         camera.name in concerned
         or (delay is not None and _is_reliable(delay) and delay.agreement > _ALIKE)
@@ -94,7 +94,7 @@ def _wrong_rate(
     cameras: Sequence[CameraTiming], delays: Sequence[CameraDelay | None]
 ) -> CaptureFinding | None:
     """A camera whose motion coincides with the others' once its times are stretched, and not as given."""
-    signals = [one.signal for one in cameras]
+    signals = [camera.signal for camera in cameras]
     before = _agreement(delays)
     tried: list[tuple[float, int, float, CameraDelay]] = []
     for i, delay in enumerate(delays):
@@ -109,7 +109,7 @@ def _wrong_rate(
                 tried.append((_agreement(after), i, stretch, mine))
     if not tried:
         return None
-    total, i, stretch, delay = max(tried, key=lambda one: one[0])
+    total, i, stretch, delay = max(tried, key=lambda entry: entry[0])
     rivals = [
         other.agreement
         for _, k, by, other in tried
@@ -124,7 +124,7 @@ def _wrong_rate(
     ):
         return None
     # of two cameras either may be wrong
-    names = tuple(one.name for one in cameras) if len(cameras) == 2 else (cameras[i].name,)
+    names = tuple(camera.name for camera in cameras) if len(cameras) == 2 else (cameras[i].name,)
     return CaptureFinding(
         Mistake.DELAY,
         names,
@@ -136,27 +136,29 @@ def _wrong_rate(
 
 def _agreement(delays: Sequence[CameraDelay | None]) -> float:
     """The sum over cameras with a reliable delay."""
-    return sum(one.agreement for one in delays if one is not None and _is_reliable(one))
+    return sum(delay.agreement for delay in delays if delay is not None and _is_reliable(delay))
 
 
 def _jumps(cameras: Sequence[CameraTiming]) -> list[tuple[float, float] | None]:
     """For each camera, reliable delays of the first and the last part of the recording, where they differ."""
     begin = max(
-        float(one.signal.times_s[0]) if len(one.signal.times_s) else np.inf for one in cameras
+        float(camera.signal.times_s[0]) if len(camera.signal.times_s) else np.inf
+        for camera in cameras
     )
     end = min(
-        float(one.signal.times_s[-1]) if len(one.signal.times_s) else -np.inf for one in cameras
+        float(camera.signal.times_s[-1]) if len(camera.signal.times_s) else -np.inf
+        for camera in cameras
     )
     if end - begin < 1.5 * _PART_S:
         return [None] * len(cameras)
     parts = [
-        camera_delays([_part(one.signal, low, low + _PART_S) for one in cameras])
+        camera_delays([_part(camera.signal, low, low + _PART_S) for camera in cameras])
         for low in np.arange(begin, end - _PART_S + 1e-6, 0.25 * _PART_S)
     ]
     out: list[tuple[float, float] | None] = []
     for i in range(len(cameras)):
         there = [one for part in parts if (one := part[i]) is not None]
-        late_s = [one.late_s for one in there if _is_reliable(one)]
+        late_s = [delay.late_s for delay in there if _is_reliable(delay)]
         changed = len(late_s) > 1 and abs(late_s[-1] - late_s[0]) > _JUMP_S
         out.append((late_s[0], late_s[-1]) if changed else None)
     return out

@@ -59,7 +59,9 @@ class PairFit:
     @property
     def cost(self) -> float:
         """Lower is better: degrees, plus a penalty for signs of a mirror image."""
-        depth = min((one for one in self.depth if np.isfinite(one)), default=0.0)
+        depth = min(
+            (correlation for correlation in self.depth if np.isfinite(correlation)), default=0.0
+        )
         # of rays that are nearly parallel depths are noise
         depth = _NO_DEPTH if self.parallax_deg < _LEAST_PARALLAX_DEG else depth
         return self.angle_deg + 0.5 * (1.0 - depth) + (1.0 - self.front)

@@ -42,20 +42,20 @@ def judge_world(
 ) -> tuple[CaptureFinding, ...]:
     """Implausible properties of the people in views that agree."""
     wide = [
-        one
-        for one in fits
-        if one.parallax_deg > _PARALLAX_DEG and np.isfinite(one.size) and one.cost < _AGREES
+        fit
+        for fit in fits
+        if fit.parallax_deg > _PARALLAX_DEG and np.isfinite(fit.size) and fit.cost < _AGREES
     ]
     if len(wide) < _LEAST:
         return ()
-    up = np.sum([one.count * one.up for one in wide], axis=0)
+    up = np.sum([fit.count * fit.up for fit in wide], axis=0)
     up /= max(float(np.linalg.norm(up)), 1e-9)
     if up[1] < np.cos(np.radians(_UPRIGHT_DEG)):
         return (_tilt_finding(names, up),)
-    size = float(np.median([one.size for one in wide])) * STATURE_M / (stature_m or STATURE_M)
+    size = float(np.median([fit.size for fit in wide])) * STATURE_M / (stature_m or STATURE_M)
     if not _SIZES[0] < size < _SIZES[1]:
         return (_size_finding(names, size, stature_m),)
-    floors = [one.floor_m for one in wide if np.isfinite(one.floor_m)]
+    floors = [fit.floor_m for fit in wide if np.isfinite(fit.floor_m)]
     if len(floors) > 1 and not _FLOOR_M[0] < float(np.median(floors)) < _FLOOR_M[1]:
         return (
             CaptureFinding(
@@ -116,7 +116,7 @@ def turned_views(
             for view in views
             if len(angles := _lean_deg(camera, view)) >= _LEAST_ANGLES
         ]
-        turned = [one for one in turns_deg if abs(one) > _TURNED_DEG]
+        turned = [turn_deg for turn_deg in turns_deg if abs(turn_deg) > _TURNED_DEG]
         # a person who bends down is no rotated picture: at other times the same picture is upright
         if len(turned) < _LEAST or len(turned) < _OFTEN * len(turns_deg):
             continue
@@ -150,4 +150,4 @@ def _lean_deg(camera: Camera, view: PersonView) -> list[float]:
     long = np.linalg.norm(way, axis=1) > 0.3
     angle = np.arctan2(trunk[:, 1], trunk[:, 0]) - np.arctan2(way[:, 1], way[:, 0])
     wrapped = (np.degrees(angle) + 180.0) % 360.0 - 180.0
-    return [float(one) for one in wrapped[long]]
+    return [float(angle_deg) for angle_deg in wrapped[long]]

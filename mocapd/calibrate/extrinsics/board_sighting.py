@@ -138,16 +138,18 @@ def _reasons(detector: BoardDetector, blank: SpreadSample) -> tuple[DetectionFai
 
 def refuse_unseen(sightings: Sequence[BoardSighting]) -> None:
     """Raises ConfigError for the first camera with too few views of the board, with the most telling reason."""
-    for one in sightings:
-        if len(one.views) >= FEWEST_VIEWS:
+    for sighting in sightings:
+        if len(sighting.views) >= FEWEST_VIEWS:
             continue
-        others = [other.recording.name for other in sightings if len(other.views) > len(one.views)]
-        where = str(one.recording.path)
-        what = f"the board is usable in {len(one.views)} of {one.pictures} pictures"
+        others = [
+            other.recording.name for other in sightings if len(other.views) > len(sighting.views)
+        ]
+        where = str(sighting.recording.path)
+        what = f"the board is usable in {len(sighting.views)} of {sighting.pictures} pictures"
         if others:
             what += f" (it is seen by {', '.join(others)})"
-        if not one.failures:
+        if not sighting.failures:
             raise ConfigError(what, where, "show the board in more pictures")
-        failure = most_telling(one.failures)
+        failure = most_telling(sighting.failures)
         what += f": {failure.reason}" + (f", {failure.detail}" if failure.detail else "")
         raise ConfigError(what, where, FIX[failure.reason])

@@ -101,7 +101,7 @@ def calibrate_folder(
         )
     notes: list[str] = []
     sightings = []
-    clocks = {one.name: one.stamps() for one in recordings}
+    clocks = {recording.name: recording.stamps() for recording in recordings}
     stride = _stride(recordings, clocks, params)
     for recording in recordings:
         sighting = sight_board(recording, spec, stride, progress)
@@ -126,9 +126,9 @@ def calibrate_sightings(
     refuse_unseen(sightings)
     board_m = corners_m(spec)
     intrinsics_of = {}
-    for done, one in enumerate(sightings):
+    for done, sighting in enumerate(sightings):
         progress("lenses", done, len(sightings))
-        intrinsics_of[one.recording.name] = _solve_camera(one, board_m, params)
+        intrinsics_of[sighting.recording.name] = _solve_camera(sighting, board_m, params)
     progress("lenses", len(sightings), len(sightings))
     return _solve_rig(
         sightings, intrinsics_of, clocks, spec, floor_frame, params, list(notes), progress
@@ -140,7 +140,7 @@ def _stride(
 ) -> int:
     """The stride of examined frames: between neighbours the board must not go far."""
     most = params.densely * params.most_pictures
-    even = -(-max(len(clocks[one.name].stamps_s) for one in recordings) // most)
+    even = -(-max(len(clocks[recording.name].stamps_s) for recording in recordings) // most)
     slowest_s = max(clock.period_s for clock in clocks.values())
     return max(1, min(even, int(1.0 / (params.least_hz * slowest_s))))
 
@@ -161,21 +161,21 @@ def _solve_rig(
     notes: list[str],
     progress: Progress,
 ) -> FolderCalibration:
-    names = [one.recording.name for one in sightings]
+    names = [sighting.recording.name for sighting in sightings]
     progress("room", 0, 1)
     # a view that contradicts its own camera's intrinsics is an outlier of time and room, too
     views = {
-        one.recording.name: {
+        sighting.recording.name: {
             i: view
-            for i, view in one.views.items()
-            if i not in intrinsics_of[one.recording.name].thrown_out
+            for i, view in sighting.views.items()
+            if i not in intrinsics_of[sighting.recording.name].thrown_out
         }
-        for one in sightings
+        for sighting in sightings
     }
     aligned = align_views(views, intrinsics_of, clocks, corners_m(spec), params.most_pictures)
     instants = aligned.instants
     floor = None if floor_frame is None else _floor_instant(instants, floor_frame)
-    sizes_px = [one.recording.size_px for one in sightings]
+    sizes_px = [sighting.recording.size_px for sighting in sightings]
     bundle = replace(params.extrinsics.bundle, longest_gap=aligned.longest_gap)
     extrinsics = solve_extrinsics(
         names,
@@ -200,15 +200,17 @@ def _solve_rig(
     elif spec.two_sided:
         notes.append("no camera saw the back of the board, which was said to be two-sided")
     reports = {
-        one.recording.name: _report(
-            one,
-            intrinsics_of[one.recording.name],
-            made.cameras[one.recording.name],
+        sighting.recording.name: _report(
+            sighting,
+            intrinsics_of[sighting.recording.name],
+            made.cameras[sighting.recording.name],
             aligned.delay_frames(
-                one.recording.name, names[0], made.cameras[one.recording.name].delay_frames
+                sighting.recording.name,
+                names[0],
+                made.cameras[sighting.recording.name].delay_frames,
             ),
         )
-        for one in sightings
+        for sighting in sightings
     }
     return FolderCalibration(
         made.rig,

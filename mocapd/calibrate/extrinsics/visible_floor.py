@@ -41,7 +41,7 @@ class VisibleFloor:
 def visible_floor(rig: Rig) -> VisibleFloor:
     """The visible floor of a rig whose floor is y = 0."""
     edge_m = np.arange(-_REACH_M + 0.5 * CELL_M, _REACH_M, CELL_M)
-    x_m, z_m = (one.ravel() for one in np.meshgrid(edge_m, edge_m, indexing="ij"))
+    x_m, z_m = (grid_m.ravel() for grid_m in np.meshgrid(edge_m, edge_m, indexing="ij"))
     visible = np.zeros(len(x_m), dtype=int)
     for camera in rig.cameras:
         whole = np.ones(len(x_m), dtype=bool)
@@ -117,6 +117,6 @@ def _widest_pair(rig: Rig, cells_m: Floats) -> tuple[float, float]:
     if not len(cells_m):
         return baseline_m, float("nan")
     x_m, z_m = cells_m.mean(axis=0)
-    rays = [one - np.array([x_m, 1.0, z_m]) for one in (a, b)]
+    rays = [centre_m - np.array([x_m, 1.0, z_m]) for centre_m in (a, b)]
     cosine = rays[0] @ rays[1] / (np.linalg.norm(rays[0]) * np.linalg.norm(rays[1]))
     return baseline_m, float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))

@@ -112,7 +112,7 @@ def find_flicker(t_ns: Ints, rows: Floats) -> Flicker | None:
             depth = _peak(t_s, change, pulses_hz, rate_hz)
         if depth >= _LEAST_DEPTH:
             found.append(Flicker(mains_hz, depth))
-    return max(found, key=lambda one: one.depth, default=None)
+    return max(found, key=lambda flicker: flicker.depth, default=None)
 
 
 def _even_times(t_ns: Ints) -> tuple[Floats, float]:

@@ -28,7 +28,7 @@ def initial_extrinsics(
             for b in alone
             if b.name not in placed
         ]
-        shared, old, new = max(candidates, key=lambda one: len(one[0]))
+        shared, old, new = max(candidates, key=lambda entry: len(entry[0]))
         first = [m[old] for m in shared]
         second = [m[new.name] for m in shared]
         if not shared:

@@ -93,12 +93,12 @@ class PatchTracks:
         self._trackers = [
             BodyTracker(
                 "shirt",
-                one,
+                rig,
                 stature_m,
-                ShirtCue(one, stature_m, colour_model, white_balance, database),
+                ShirtCue(rig, stature_m, colour_model, white_balance, database),
                 None,
             )
-            for one in rigs
+            for rig in rigs
         ]
         self._shapes = [mean_shape(stature_m) for _ in rigs]
         self.observations: list[PatchObservation] = []
@@ -135,7 +135,7 @@ class PatchTracks:
         self, frames: Iterable[FrameSet], progress: Callable[[int], None] | None = None
     ) -> None:
         """Track all of a recording."""
-        for i, one in enumerate(frames):
-            self.add(one)
+        for i, frame in enumerate(frames):
+            self.add(frame)
             if progress is not None:
                 progress(i + 1)

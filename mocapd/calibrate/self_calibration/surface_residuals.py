@@ -102,4 +102,4 @@ def _of(model: BodyModel, *parts: int) -> Floats:
 
 def _hats(at: Floats, knots: list[float]) -> NDArray[np.float64]:
     """(K,V): 1 at a knot, falling to 0 at its neighbours; constant beyond the ends."""
-    return np.stack([np.interp(at, knots, one) for one in np.eye(len(knots))])
+    return np.stack([np.interp(at, knots, row) for row in np.eye(len(knots))])

@@ -119,7 +119,7 @@ def _merge(chain: Sequence[ClockMap]) -> ClockMap:
     jump_s: Floats = np.concatenate([clock.jump_s for clock in chain])
     change_s: Floats = np.concatenate([clock.changes_s for clock in chain])
     order = np.argsort(jump_s)
-    first_s = sum(float(one.offset_s[0]) for one in chain)
+    first_s = sum(float(clock.offset_s[0]) for clock in chain)
     return ClockMap(jump_s[order], first_s + np.concatenate([[0.0], np.cumsum(change_s[order])]))
 
 
@@ -128,7 +128,7 @@ def _reference(names: Sequence[str], pairs: Mapping[tuple[str, str], PairOffsets
 
     def worth(name: str) -> tuple[int, int]:
         own = [offsets for pair, offsets in pairs.items() if name in pair and offsets.sure]
-        return -sum(len(one.jumps) for one in own), sum(one.pairs for one in own)
+        return -sum(len(offsets.jumps) for offsets in own), sum(offsets.pairs for offsets in own)
 
     return max(names, key=worth)
 

@@ -1,6 +1,6 @@
 """The binary part of a glTF file, and the GLB container.
 
-The few records of the format are written here: pygltflib would add four dependencies that are no longer maintained.
+The few records of the format are written here: pygltflib would add four older packages.
 """
 
 import json

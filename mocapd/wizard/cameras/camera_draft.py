@@ -12,14 +12,16 @@ def with_cameras(draft: Draft, cameras: tuple[DraftCamera, ...]) -> Draft:
         return draft
     before = {camera.id: camera for camera in draft.cameras}
     # without cameras before, the data come from the saved calibration of just these
-    same_size = {one.id for one in cameras if before.get(one.id, one).size_px == one.size_px}
+    same_size = {
+        camera.id for camera in cameras if before.get(camera.id, camera).size_px == camera.size_px
+    }
     same_look = {
-        one.id
-        for one in cameras
-        if one.id in same_size and before.get(one.id, one).controls == one.controls
+        camera.id
+        for camera in cameras
+        if camera.id in same_size and before.get(camera.id, camera).controls == camera.controls
     }
     lenses = {name: lens for name, lens in draft.intrinsics.items() if name in same_size}
-    colours = {name: one for name, one in draft.colours.items() if name in same_look}
+    colours = {name: colours for name, colours in draft.colours.items() if name in same_look}
     draft = replace(
         draft,
         cameras=cameras,

@@ -24,7 +24,9 @@ def node_of(camera: DraftCamera, nodes: Sequence[CameraInfo]) -> CameraInfo | No
     if wanted is None:
         return None
     moved = [
-        one for one in nodes if one.captures and one.identity and one.identity.model == wanted.model
+        node
+        for node in nodes
+        if node.captures and node.identity and node.identity.model == wanted.model
     ]
     return moved[0] if len(moved) == 1 else None
 
@@ -34,12 +36,12 @@ def unused_nodes(
 ) -> tuple[CameraInfo, ...]:
     """The cameras of the machine that the setup has not opened, with their reasons."""
     used = [node_of(camera, nodes) for camera in cameras]
-    return tuple(one for one in nodes if one.captures and one not in used)
+    return tuple(node for node in nodes if node.captures and node not in used)
 
 
 def mode_of(camera: DraftCamera, node: CameraInfo) -> Mode:
     """The requested mode of a camera: MJPG where available."""
-    mjpg = any(one.fourcc == "MJPG" for one in node.formats)
+    mjpg = any(fmt.fourcc == "MJPG" for fmt in node.formats)
     return Mode("MJPG" if mjpg else "YUYV", camera.size_px, camera.fps_hz)
 
 

@@ -148,8 +148,8 @@ class CamerasStep:
             details={
                 "cameras": [self._row(camera) for camera in self._cameras.values()],
                 "others": [
-                    _node_row(one)
-                    for one in unused_nodes(tuple(self._cameras.values()), self._nodes)
+                    _node_row(node)
+                    for node in unused_nodes(tuple(self._cameras.values()), self._nodes)
                 ],
             },
         )
@@ -191,7 +191,7 @@ class CamerasStep:
         camera = self._cameras[name]
         node = node_of(camera, self._nodes)
         formats = node.formats if node is not None else ()
-        there = any(one.size_px == size_px and fps_hz in one.rates_hz for one in formats)
+        there = any(fmt.size_px == size_px and fps_hz in fmt.rates_hz for fmt in formats)
         if not there or not self._locks.can_lock(name):
             raise InputError(
                 f"has no mode {size_px[0]}x{size_px[1]} at {fps_hz:g} Hz",
@@ -281,7 +281,7 @@ class CamerasStep:
             "share": round(locking.share, 2),
             "lockable": self._locks.can_lock(name),
             "controls": held if locking.phase is LockPhase.LOCKED else {},
-            "problems": [asdict(one) for one in self._problems(name)]
+            "problems": [asdict(problem) for problem in self._problems(name)]
             if name not in self._left_out
             else [],
             "offer": {"size_px": list(offer.size_px), "fps_hz": offer.fps_hz} if offer else None,

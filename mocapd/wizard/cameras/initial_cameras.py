@@ -19,12 +19,14 @@ def configured_cameras(
 ) -> tuple[DraftCamera, ...]:
     """Those of the configuration, in the mode of an earlier setup. Raises MocapdError for one without
     pictures."""
-    before = {(one.id, one.source): one for one in saved}
+    before = {(camera.id, camera.source): camera for camera in saved}
     return tuple(
-        before[one.id, one.source]
-        if (one.id, one.source) in before
-        else DraftCamera(one.id, one.source, picture_size(one), one.fps_hz, one.controls)
-        for one in cameras
+        before[camera.id, camera.source]
+        if (camera.id, camera.source) in before
+        else DraftCamera(
+            camera.id, camera.source, picture_size(camera), camera.fps_hz, camera.controls
+        )
+        for camera in cameras
     )
 
 
@@ -57,8 +59,8 @@ def plugged_cameras(
 
 def where_now(saved: Sequence[DraftCamera], infos: Sequence[CameraInfo]) -> tuple[DraftCamera, ...]:
     """The saved cameras at their present addresses; one that is not plugged in keeps its old one."""
-    moved = {one.camera: one.now for one in find_port_changes(saved, identities(infos))}
-    return tuple(replace(one, source=moved.get(one.id, one.source)) for one in saved)
+    moved = {change.camera: change.now for change in find_port_changes(saved, identities(infos))}
+    return tuple(replace(camera, source=moved.get(camera.id, camera.source)) for camera in saved)
 
 
 def identities(infos: Sequence[CameraInfo]) -> tuple[WebcamIdentity, ...]:

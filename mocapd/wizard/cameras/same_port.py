@@ -35,7 +35,7 @@ def find_port_changes(
     identities = identities_of((camera.id, camera.source) for camera in saved)
     moved = []
     for name, wanted in identities.items():
-        others = [one for other, one in identities.items() if other != name]
+        others = [identity for other, identity in identities.items() if other != name]
         try:
             found = match_identity(wanted, present, others)
         except UnavailableError:  # unplugged, or several identical candidates
@@ -50,8 +50,8 @@ def same_camera(draft: Draft, moved: PortChange) -> Draft:
     return replace(
         draft,
         cameras=tuple(
-            replace(one, source=moved.now) if one.id == moved.camera else one
-            for one in draft.cameras
+            replace(camera, source=moved.now) if camera.id == moved.camera else camera
+            for camera in draft.cameras
         ),
     )
 
@@ -112,7 +112,7 @@ class AsksForPorts:
         if not isinstance(command, SamePort):
             self._step.command(command)
             return
-        asked = [one for one in self._moved if one.camera == command.camera]
+        asked = [change for change in self._moved if change.camera == command.camera]
         if not asked:
             raise InputError("nothing is asked of this camera", "the page", "reload the page")
         if command.same:
@@ -126,17 +126,17 @@ class AsksForPorts:
         view = self._step.view()
         questions = tuple(
             Problem(
-                f"a camera like it was in USB port {_port(one.was)}, and is now in {_port(one.now)}",
-                one.camera,
+                f"a camera like it was in USB port {_port(change.was)}, and is now in {_port(change.now)}",
+                change.camera,
                 "say below whether it is the same camera",
             )
-            for one in self._moved
+            for change in self._moved
         )
-        details = {**view.details, "moved": [asdict(one) for one in self._moved]}
+        details = {**view.details, "moved": [asdict(change) for change in self._moved]}
         view = replace(view, problems=questions + self._trouble + view.problems, details=details)
         if not self._moved or view.state is not StepState.DONE:
             return view
-        names = " and ".join(one.camera for one in self._moved)
+        names = " and ".join(change.camera for change in self._moved)
         sentence = f"Say below whether {names} is the camera that was calibrated before."
         return replace(view, state=StepState.WAITING, sentence=sentence)
 

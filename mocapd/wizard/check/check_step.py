@@ -155,7 +155,9 @@ class CheckStep:
     def view(self) -> StepView:
         """See Step."""
         state, sentence, progress = self._status()
-        of_cameras = tuple(one.problem for one in self._verdicts if one.problem is not None)
+        of_cameras = tuple(
+            verdict.problem for verdict in self._verdicts if verdict.problem is not None
+        )
         metrics = self._tracking.metrics() if self._tracking is not None else None
         return StepView(
             state,
@@ -166,7 +168,7 @@ class CheckStep:
                 "phase": self._phase.value,
                 "tracking": None if metrics is None else metrics.tracking.value,
                 "rate_hz": None if metrics is None else round(metrics.rate_hz, 1),
-                "verdicts": [verdict_json(one) for one in self._verdicts],
+                "verdicts": [verdict_json(verdict) for verdict in self._verdicts],
                 "saved": self._saved or None,
                 "next_command": self._settings.next_command,
                 "has_shirt": self._context.draft.has_shirt,
@@ -292,7 +294,7 @@ class CheckStep:
             return StepState.WAITING, sentence, share
         if self._saved:
             return StepState.DONE, "Saved. You may close this page.", 1.0
-        if self._problems or any(one.problem for one in self._verdicts):
+        if self._problems or any(verdict.problem for verdict in self._verdicts):
             return StepState.DONE, "See below what is doubtful; mend it, or save it as it is.", 1.0
         return StepState.DONE, "All is well: save it.", 1.0
 

@@ -55,10 +55,13 @@ class Canvas:
             "ok": solved is not None and solved.W is not None,
             "marks": []
             if solved is None
-            else [list(p) for one in solved.problems for p in one.at_px],
+            else [list(p) for problem in solved.problems for p in problem.at_px],
             "alike": []
             if solved is None
-            else [{"name": one.name, "at": one.polygon_px.tolist()} for one in solved.alike],
+            else [
+                {"name": lookalike.name, "at": lookalike.polygon_px.tolist()}
+                for lookalike in solved.alike
+            ],
             "note": "" if solved is None else solved.note,
         }
 
@@ -72,14 +75,14 @@ def canvas_of(picture: LabelledPicture) -> Canvas:
 
 def problems_of(solved: CameraSolution, camera: str) -> list[Problem]:
     """Problems of a camera's strokes."""
-    return [Problem(one.what, camera, one.fix) for one in solved.problems]
+    return [Problem(problem.what, camera, problem.fix) for problem in solved.problems]
 
 
 def outlines(solved: CameraSolution) -> tuple[Shape, ...]:
     """Outlines and names of things outside the wearer with the shirt's colours."""
     shapes: list[Shape] = []
-    for one in solved.alike:
-        corners = tuple((float(x), float(y)) for x, y in one.polygon_px)
+    for lookalike in solved.alike:
+        corners = tuple((float(x), float(y)) for x, y in lookalike.polygon_px)
         shapes.append(Shape("polygon", corners, "hint"))
-        shapes.append(Shape("text", corners[:1], "hint", one.name))
+        shapes.append(Shape("text", corners[:1], "hint", lookalike.name))
     return tuple(shapes)

@@ -68,10 +68,10 @@ def solve_colours(
     standard = colour_model(())
     judged = {
         name: before[name].problems
-        if name in before and before[name].drawn is one
-        else check_strokes(one.picture.pixels, one.picture.labels, standard)
-        for name, one in drawn.items()
-        if one.picture.labels.any()
+        if name in before and before[name].drawn is drawing
+        else check_strokes(drawing.picture.pixels, drawing.picture.labels, standard)
+        for name, drawing in drawn.items()
+        if drawing.picture.labels.any()
     }
     good = {
         name: drawn[name].picture
@@ -109,6 +109,6 @@ def _solution(
 def _missing(pictures: Mapping[str, LabelledPicture], model: ColourModel) -> tuple[str, ...]:
     """Names of the colours with too few strokes in all cameras together."""
     pixels = np.zeros(COLOURS)
-    for one in pictures.values():
-        pixels += stroke_means(one.pixels, one.labels)[1]
+    for picture in pictures.values():
+        pixels += stroke_means(picture.pixels, picture.labels)[1]
     return tuple(model.names[k] for k in range(COLOURS) if pixels[k] < MIN_PIXELS)

@@ -64,7 +64,9 @@ class ColourStep:
         self._context.scene(Scene.T_POSE)
         if draft.colours:
             self._personal = draft.personal
-            self._canvases = {name: canvas_of(one.picture) for name, one in draft.colours.items()}
+            self._canvases = {
+                name: canvas_of(colours.picture) for name, colours in draft.colours.items()
+            }
             self._to_solve = True
 
     def tick(self, now_ns: int) -> None:
@@ -118,8 +120,8 @@ class ColourStep:
         """Start with new pictures: old strokes are useless, and the light may differ."""
         self._take += 1
         self._canvases = {
-            name: canvas_of(LabelledPicture(one.pixels, one.pixels[..., 0] * 0))
-            for name, one in frozen.frames.items()
+            name: canvas_of(LabelledPicture(frame.pixels, frame.pixels[..., 0] * 0))
+            for name, frame in frozen.frames.items()
         }
         self._solution = Solution({}, False, ())
         self._troubles = tuple(
@@ -132,8 +134,8 @@ class ColourStep:
     def _start_proposing(self) -> None:
         self._to_propose, self._proposing = False, True
         context, take = self._context, self._take
-        serials = {name: one.serial for name, one in self._canvases.items()}
-        pictures = {name: one.drawn.picture.pixels for name, one in self._canvases.items()}
+        serials = {name: canvas.serial for name, canvas in self._canvases.items()}
+        pictures = {name: canvas.drawn.picture.pixels for name, canvas in self._canvases.items()}
         draft, cache_dir, load = context.draft, context.cache_dir, self._load
 
         def job(report: Tell) -> dict[str, Proposal | InputError]:
@@ -154,13 +156,13 @@ class ColourStep:
             canvas = self._canvases[name]
             if isinstance(one, Proposal) and canvas.serial == serials[name]:
                 canvas.draw(one.strokes, one.shirt, SERVICE)
-        failed = [one for one in proposals.values() if isinstance(one, InputError)]
+        failed = [proposal for proposal in proposals.values() if isinstance(proposal, InputError)]
         self._troubles = tuple({str(error): Problem.of(error) for error in failed}.values())
         self._to_solve = True
 
     def _start_solving(self) -> None:
         self._to_solve = False
-        drawn = {name: one.drawn for name, one in self._canvases.items()}
+        drawn = {name: canvas.drawn for name, canvas in self._canvases.items()}
         personal, before, take = self._personal, self._solution.cameras, self._take
 
         def done(solution: Solution) -> None:
@@ -174,9 +176,9 @@ class ColourStep:
         """Copy good solutions to the draft."""
         context = self._context
         colours = {
-            name: DraftColours(one.drawn.picture, one.W)
-            for name, one in self._solution.cameras.items()
-            if one.W is not None
+            name: DraftColours(camera.drawn.picture, camera.W)
+            for name, camera in self._solution.cameras.items()
+            if camera.W is not None
         }
         context.draft = replace(context.draft, colours=colours, personal=self._solution.personal)
 
@@ -246,7 +248,7 @@ class ColourStep:
 
     def _solution_status(self) -> tuple[StepState, str, float]:
         solved = self._solution.cameras
-        bad = [name for name, one in solved.items() if one.W is None]
+        bad = [name for name, solution in solved.items() if solution.W is None]
         empty = [name for name in self._canvases if name not in solved]
         if bad:
             return (

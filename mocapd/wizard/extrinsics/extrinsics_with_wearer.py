@@ -179,8 +179,8 @@ class ExtrinsicsWithWearer:
         """Twice the standard deviations of the least certain camera."""
         assert self._found is not None
         uncertainties = self._found.report.uncertainties.values()
-        turn_deg = 2.0 * max(one.rotation_deg for one in uncertainties)
-        percent = 2.0 * max(one.distance_percent for one in uncertainties)
+        turn_deg = 2.0 * max(uncertainty.rotation_deg for uncertainty in uncertainties)
+        percent = 2.0 * max(uncertainty.distance_percent for uncertainty in uncertainties)
         return f" to about {turn_deg:.0f}° and {percent:.0f} %"
 
     def _problems(self) -> tuple[Problem, ...]:
@@ -211,11 +211,12 @@ class ExtrinsicsWithWearer:
                     name: {"rms_px": round(px, 3)} for name, px in report.residual_px.items()
                 },
                 "rotation_deg": {
-                    name: round(one.rotation_deg, 2) for name, one in report.uncertainties.items()
+                    name: round(uncertainty.rotation_deg, 2)
+                    for name, uncertainty in report.uncertainties.items()
                 },
                 "distance_percent": {
-                    name: round(one.distance_percent, 2)
-                    for name, one in report.uncertainties.items()
+                    name: round(uncertainty.distance_percent, 2)
+                    for name, uncertainty in report.uncertainties.items()
                 },
                 "match": round(report.match, 3),
             }

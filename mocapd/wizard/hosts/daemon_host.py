@@ -144,10 +144,10 @@ class DaemonHost:
         state_dir = state_dir_of(config, session)
         cameras, draft = _with_what_was_saved(_cameras_of(session, config), state_dir)
         moved = _port_changes(draft)
-        for one in moved:
-            draft = same_camera(draft, one)
-        sources = {one.id: one.source for one in draft.cameras}
-        cameras = tuple(replace(one, source=sources[one.id]) for one in cameras)
+        for change in moved:
+            draft = same_camera(draft, change)
+        sources = {camera.id: camera.source for camera in draft.cameras}
+        cameras = tuple(replace(camera, source=sources[camera.id]) for camera in cameras)
         steps = all_steps(
             SetupCameras(cameras, list_cameras, self._locks, moved),
             CheckSettings(config.tracker, config.smoothing.preset, service.hub.bundler),
@@ -209,8 +209,8 @@ def _with_what_was_saved(
     except MocapdError as error:  # none yet, or a damaged one
         _log.info("the setup begins from nothing: %s", error)
         return cameras, Draft(cameras=cameras)
-    before = {(one.id, one.source): one for one in saved.cameras}
-    cameras = tuple(before.get((one.id, one.source), one) for one in cameras)
+    before = {(camera.id, camera.source): camera for camera in saved.cameras}
+    cameras = tuple(before.get((camera.id, camera.source), camera) for camera in cameras)
     if set(cameras) == set(saved.cameras):
         return cameras, replace(saved, cameras=cameras)
     # input of the user that need not be repeated

@@ -39,10 +39,10 @@ class OpenCameras:
         self._died = died
         self._pace = Pace(live=True)  # recordings start together and keep their own time
         given = sources or {}
-        self.sources = tuple(given.get(one.id) or self._source(one) for one in cameras)
+        self.sources = tuple(given.get(camera.id) or self._source(camera) for camera in cameras)
         self._captures = {
-            one.id: self._thread(source, one)
-            for one, source in zip(cameras, self.sources, strict=True)
+            camera.id: self._thread(source, camera)
+            for camera, source in zip(cameras, self.sources, strict=True)
         }
         self._care = CaptureCare(self._captures.values())
 
@@ -73,7 +73,9 @@ class OpenCameras:
 
     def _source(self, camera: DraftCamera) -> Source:
         settings = WebcamSettings(camera.size_px, camera.fps_hz, camera.controls)
-        others = identities_of((one.id, one.source) for one in self.cameras if one != camera)
+        others = identities_of(
+            (other.id, other.source) for other in self.cameras if other != camera
+        )
         request = SourceRequest(
             camera.id, settings=settings, others=tuple(others.values()), pace=self._pace
         )

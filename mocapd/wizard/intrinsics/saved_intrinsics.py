@@ -106,12 +106,12 @@ def find_saved_intrinsics(
 ) -> SavedIntrinsics | None:
     """The intrinsics of this camera in this mode, with the same focus where both are recorded."""
     key = key_of(camera)
-    for one in saved:
-        same = one.camera == key and one.size_px == camera.size_px
+    for record in saved:
+        same = record.camera == key and record.size_px == camera.size_px
         if same and (
-            None in (one.focus, camera.controls.focus) or one.focus == camera.controls.focus
+            None in (record.focus, camera.controls.focus) or record.focus == camera.controls.focus
         ):
-            return one
+            return record
     return None
 
 
@@ -130,12 +130,12 @@ def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
     ]
     if not new:
         return
-    made = {(one.camera, one.size_px) for one in new}
+    made = {(record.camera, record.size_px) for record in new}
     path = state_dir / FILE_NAME
     try:
         before = _readable(path)
-        rest = [one for one in before if (one.camera, one.size_px) not in made]
-        data = {"schema": SCHEMA, "lens": [_table(one) for one in (*rest, *new)]}
+        rest = [record for record in before if (record.camera, record.size_px) not in made]
+        data = {"schema": SCHEMA, "lens": [_table(record) for record in (*rest, *new)]}
         state_dir.mkdir(parents=True, exist_ok=True)
         with whole_file(path) as partial:
             partial.write_text(_HEADER + toml_text(data), encoding="utf-8")
