@@ -35,8 +35,8 @@ _FREE_OFF_PX = 1.5
 
 @dataclass(frozen=True, slots=True)
 class PictureChange:
-    """cameras: indexes 0 and 1 of those that may be the changed ones; scale: how many times larger what they show is than
-    calibrated; is_central: scaled about its middle, and nothing else; count: matches that this explains."""
+    """cameras: indexes 0 and 1 of those that may be the changed ones; scale: enlargement of their view relative to the
+    calibration; is_central: scaled about its middle, and nothing else; count: matches that this explains."""
 
     cameras: tuple[int, ...]
     scale: float

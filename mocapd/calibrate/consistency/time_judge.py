@@ -21,7 +21,7 @@ _RATES = (0.5, 0.6, 2 / 3, 0.8, 5 / 6, 0.96, 25 / 24, 1.2, 1.25, 1.5, 5 / 3, 2.0
 _RATE_AGREEMENT, _RATE_GAIN = (
     0.6,
     0.2,
-)  # of a rate that is believed, and more than the rates said bring
+)  # least agreement of a corrected rate, and least gain over the given rates
 _RATE_NEAR = 0.06  # of the logarithm: rates that are no rivals
 
 
