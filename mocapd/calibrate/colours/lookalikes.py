@@ -45,12 +45,12 @@ def lookalikes(
     size = 2 * round(_BODY_MARGIN_SHARE * w) + 1
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     ids[cv2.dilate((shirt > 0).astype(np.uint8), near) > 0] = 0
-    found = [
+    regions = [
         Lookalike(colour, model.names[colour - 1], polygon, area)
         for colour in range(1, len(model.names) + 1)
         for polygon, area in _regions((ids == colour).astype(np.uint8), least_share * h * w)
     ]
-    return tuple(sorted(found, key=lambda lookalike: -lookalike.area_px))
+    return tuple(sorted(regions, key=lambda lookalike: -lookalike.area_px))
 
 
 def colours_alone(
@@ -76,14 +76,14 @@ def hull_of(strokes: Bytes) -> Bytes:
     return mask
 
 
-def lookalike_warning(found: tuple[Lookalike, ...], size_px: tuple[int, int]) -> str:
+def lookalike_warning(regions: tuple[Lookalike, ...], size_px: tuple[int, int]) -> str:
     """One sentence for the user, or "" for no lookalikes; size_px: width and height."""
-    if not found:
+    if not regions:
         return ""
     places = [
-        f"{lookalike.name} ({_place(lookalike.polygon_px, size_px)})" for lookalike in found[:5]
+        f"{lookalike.name} ({_place(lookalike.polygon_px, size_px)})" for lookalike in regions[:5]
     ]
-    more = f" and {len(found) - 5} smaller ones" if len(found) > 5 else ""
+    more = f" and {len(regions) - 5} smaller ones" if len(regions) > 5 else ""
     return (
         f"these things behind you have the shirt's colours: {', '.join(places)}{more}"
         " -- cover them or turn the camera"

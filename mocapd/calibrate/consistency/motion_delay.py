@@ -89,10 +89,10 @@ def camera_delays(signals: Sequence[MotionSignal]) -> list[CameraDelay | None]:
     others see other things, so their delay is undetermined.
     """
     count = len(signals)
-    found = _pair_blocks(signals)
-    if found is None:
+    correlations = _pair_blocks(signals)
+    if correlations is None:
         return [None] * count
-    lags_s, blocks = found
+    lags_s, blocks = correlations
     curves = blocks.sum(axis=-1)
     weights = _weights(lags_s, curves)
     joined = _largest_group(weights)

@@ -123,7 +123,7 @@ def _best_zoom(
     cameras: Sequence[Camera], table: _Table, given: Mapping[_Pair, PairFit]
 ) -> tuple[Hypothesis, float] | None:
     """The zoom of one camera with the largest gain, and the gain; names all cameras that may be the zoomed one."""
-    found: list[tuple[Hypothesis, float]] = []
+    gains: list[tuple[Hypothesis, float]] = []
     for i in range(len(cameras)):
         if _cost_about(given, (i,)) < _WELL:
             continue
@@ -132,11 +132,11 @@ def _best_zoom(
             continue
         factor = float(zoom.mends[i].keywords["factor"])  # type: ignore[attr-defined]
         finer, more = _best_of(shifted_zooms(cameras, i, 1.0 / factor), table, given)
-        found.append((finer, more) if finer is not None and more > brought else (zoom, brought))
-    if not found:
+        gains.append((finer, more) if finer is not None and more > brought else (zoom, brought))
+    if not gains:
         return None
-    best, most = max(found, key=lambda entry: entry[1])
-    rivals = [zoom for zoom, brought in found if brought > _RIVAL * most and zoom is not best]
+    best, most = max(gains, key=lambda entry: entry[1])
+    rivals = [zoom for zoom, brought in gains if brought > _RIVAL * most and zoom is not best]
     if not rivals:
         return best, most
     affected = tuple(sorted({best.affected[0], *(rival.affected[0] for rival in rivals)}))

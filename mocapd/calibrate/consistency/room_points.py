@@ -74,9 +74,9 @@ def judge_room(cameras: tuple[Camera, Camera], px: tuple[Floats, Floats]) -> Roo
     if given > matches / _TIMES:
         return RoomVerdict(matches, given, given, None)
     free = _fitting_anything(px)
-    found = [_best_change(cameras, px, i, flip) for i in (0, 1) for flip in (1.0, -1.0)]
-    found += [_best_scale(cameras, px, scaled) for scaled in ((0,), (1,), (0, 1))]
-    sure = [change for change in found if _is_sure(change, matches, given)]
+    changes = [_best_change(cameras, px, i, flip) for i in (0, 1) for flip in (1.0, -1.0)]
+    changes += [_best_scale(cameras, px, scaled) for scaled in ((0,), (1,), (0, 1))]
+    sure = [change for change in changes if _is_sure(change, matches, given)]
     return RoomVerdict(matches, given, free, _likeliest(sure) if sure else None)
 
 
@@ -94,10 +94,10 @@ def _is_sure(change: PictureChange, matches: int, given: int) -> bool:
     return change.count >= max(least, _TIMES * (given + 1), _SHARE * matches)
 
 
-def _likeliest(found: Sequence[PictureChange]) -> PictureChange | None:
+def _likeliest(changes: Sequence[PictureChange]) -> PictureChange | None:
     """The change with most matches, of those near it the simplest; names all cameras that may have it."""
-    most = max(change.count for change in found)
-    near = [change for change in found if change.count >= _AS_WELL * most]
+    most = max(change.count for change in changes)
+    near = [change for change in changes if change.count >= _AS_WELL * most]
     plain = [change for change in near if not change.is_mirrored and not change.is_turned] or near
     best = max(plain, key=lambda change: (change.is_central, change.count))
     alike = {

@@ -165,10 +165,10 @@ def with_board(
             continue
         held = camera_from_board(PrintPose(pose, view.back), scene.back)
         guess = _with(scene, scene.camera_from_scene[i].inverse() @ held)
-        found, error_px = _fit_position(guess, obs)
+        fitted, error_px = _fit_position(guess, obs)
         # a single camera may choose the mirrored pose of a board that is small in the picture
         if error_px < best_px:
-            best, best_px = found, error_px
+            best, best_px = fitted, error_px
     if best is None:
         raise ConfigError("the board cannot be placed", "the room", "show more of the board")
     both = extrinsics.bundle.scene
@@ -217,8 +217,8 @@ def _fit_position(
     solution = scipy.optimize.least_squares(
         lambda x: residuals_px(at_step(x), obs).ravel(), np.zeros(POSE), x_scale=0.01
     )
-    found = at_step(solution.x)
-    return found, _rms(np.linalg.norm(residuals_px(found, obs), axis=1))
+    fitted = at_step(solution.x)
+    return fitted, _rms(np.linalg.norm(residuals_px(fitted, obs), axis=1))
 
 
 def place_in_world(

@@ -41,14 +41,14 @@ def light_problems(
 
     flicker: the result of `find_flicker` for the frames; exposure_s: exposure time [s], None where unknown.
     """
-    found = []
+    problems = []
     thin = pixels[::12, ::12].reshape(-1, 3)
     if float(np.percentile(thin @ np.array([0.114, 0.587, 0.299]), 75)) < _DARK_LEVEL:
-        found.append(
+        problems.append(
             Problem("the picture is too dark", camera, "switch on more light, or open the blinds")
         )
     elif exposure_s is not None and exposure_s > 0.02:
-        found.append(
+        problems.append(
             Problem(
                 f"dim light: each picture takes {1e3 * exposure_s:.0f} ms, so quick movements blur",
                 camera,
@@ -57,7 +57,7 @@ def light_problems(
         )
     white = float((thin.min(axis=1) >= _WHITE).mean())
     if white > _WHITE_SHARE:
-        found.append(
+        problems.append(
             Problem(
                 f"{100 * white:.0f} % of the picture is plain white",
                 camera,
@@ -65,8 +65,8 @@ def light_problems(
             )
         )
     if flicker is not None:
-        found.append(_flicker_problem(camera, flicker, exposure_s))
-    return tuple(found)
+        problems.append(_flicker_problem(camera, flicker, exposure_s))
+    return tuple(problems)
 
 
 def _flicker_problem(camera: str, flicker: Flicker, exposure_s: float | None) -> Problem:
@@ -103,7 +103,7 @@ def find_flicker(t_ns: Ints, rows: Floats) -> Flicker | None:
     change = np.log(rows + 4.0)
     change = change - change.mean(axis=0)
     change -= np.outer(t_s - t_s.mean(), (t_s - t_s.mean()) @ change / np.var(t_s) / len(t_s))
-    found = []
+    flickers = []
     for mains_hz in _MAINS_HZ:
         pulses_hz = 2.0 * mains_hz
         if _alias_hz(pulses_hz, rate_hz) < _SLOW_HZ:
@@ -111,8 +111,8 @@ def find_flicker(t_ns: Ints, rows: Floats) -> Flicker | None:
         else:
             depth = _peak(t_s, change, pulses_hz, rate_hz)
         if depth >= _LEAST_DEPTH:
-            found.append(Flicker(mains_hz, depth))
-    return max(found, key=lambda flicker: flicker.depth, default=None)
+            flickers.append(Flicker(mains_hz, depth))
+    return max(flickers, key=lambda flicker: flicker.depth, default=None)
 
 
 def _even_times(t_ns: Ints) -> tuple[Floats, float]:

@@ -51,8 +51,10 @@ def extrinsics_from_body(
         old = {camera.name: camera for camera in near.cameras}
         before = [with_extrinsics(c, camera_from_world(old[c.name])) for c in bare_cameras]
         solvers.append(JointSolver(model, before, keyframes, p))
-    found = _solve_pass(min(solvers, key=lambda solver: solver.cost), observations, stature_m, p)
-    rig, report = _again(*found, observations, model, p)
+    first_pass = _solve_pass(
+        min(solvers, key=lambda solver: solver.cost), observations, stature_m, p
+    )
+    rig, report = _again(*first_pass, observations, model, p)
     return align_with_gravity(rig, observations, stature_m, report.factors), report
 
 

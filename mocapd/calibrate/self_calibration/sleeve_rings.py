@@ -81,13 +81,13 @@ def sleeve_rings(
             continue
         px: Floats = project(alone, np.stack([at_m - 0.01 * along, at_m, at_m + 0.01 * along]))
         direction = px[2] - px[0]
-        found = _find(
+        result = _find(
             ring, sighting.ids, (px[1] - corner) / image_scale,
             direction / float(np.linalg.norm(direction)), tilt,
             float(at_m[2]) / float(camera.K[0, 0]) * image_scale,
         )  # fmt: skip
-        if found is not None:
-            middle, half_m[i] = found
+        if result is not None:
+            middle, half_m[i] = result
             xy[i] = normalised(camera, (middle * image_scale + corner)[None])[0]
     return xy, half_m
 
@@ -107,7 +107,7 @@ def _find(
     ring: _Ring, ids: NDArray[np.uint8], c: Floats, a: Floats, tilt: float, px_m: float
 ) -> tuple[Floats, float] | None:
     """A ring's middle (2,) in work px and half its width [m]; searches about c along a (2,)."""
-    found: tuple[Floats, float] | None = None
+    result: tuple[Floats, float] | None = None
     for last in (False, True):  # again about the first result
         window = _window(ids, c, a, ring.reach_m / px_m, _ACROSS_M / px_m)
         border = _border(ring, window, px_m)
@@ -129,8 +129,8 @@ def _find(
         if not ring.bends:
             a = window.a + slope * window.n
             a = a / np.linalg.norm(a)
-        found = c, half * px_m
-    return found
+        result = c, half * px_m
+    return result
 
 
 def _window(ids: NDArray[np.uint8], c: Floats, a: Floats, reach: float, across: float) -> _Window:
@@ -179,18 +179,18 @@ def _outline(
         near &= window.v < about - 1.0
     else:
         cloth = cloth | ring.after[window.ids]
-    found = []
+    rows = []
     for j in np.flatnonzero(near):
         run = _run(cloth[:, j])
         if run is not None and run[0] > 0 and run[1] < len(window.u):
             lower, upper = window.u[run[0]], window.u[run[1] - 1]
-            found.append((window.v[j] - about, (lower + upper) / 2, (upper - lower + _STEP_PX) / 2))
-    if len(found) < 3:
+            rows.append((window.v[j] - about, (lower + upper) / 2, (upper - lower + _STEP_PX) / 2))
+    if len(rows) < 3:
         return None
-    v, middle, half = np.array(found).T
+    v, middle, half = np.array(rows).T
     usual = float(np.median(half))
     good = np.abs(half - usual) < max(0.12 * usual, 0.8)
-    if np.count_nonzero(good) < max(3, 0.6 * len(found)):
+    if np.count_nonzero(good) < max(3, 0.6 * len(rows)):
         return None
     if ring.bends:
         return float(np.median(middle[good])), 0.0, usual

@@ -37,11 +37,11 @@ def find_port_changes(
     for name, wanted in identities.items():
         others = [identity for other, identity in identities.items() if other != name]
         try:
-            found = match_identity(wanted, present, others)
+            match = match_identity(wanted, present, others)
         except UnavailableError:  # unplugged, or several identical candidates
             continue
-        if found.moved:
-            moved.append(PortChange(name, str(wanted), str(found.identity)))
+        if match.moved:
+            moved.append(PortChange(name, str(wanted), str(match.identity)))
     return tuple(moved)
 
 

@@ -96,13 +96,13 @@ def _solution(
 ) -> CameraSolution:
     shirt = drawn.shirt if drawn.shirt is not None else hull_of(drawn.picture.labels)
     pixels = drawn.picture.pixels
-    found = lookalikes(pixels, shirt, model, W)
+    alike = lookalikes(pixels, shirt, model, W)
     h, w = pixels.shape[:2]
     step = -(-w // _SEEN_WIDTH_PX)
     small = np.ascontiguousarray(pixels[::step, ::step])
     return CameraSolution(
         drawn, problems, W, encode_preview(small, colours_alone(small, model, W)),
-        found, lookalike_warning(found, (w, h)),
+        alike, lookalike_warning(alike, (w, h)),
     )  # fmt: skip
 
 

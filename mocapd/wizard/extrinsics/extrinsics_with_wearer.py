@@ -199,11 +199,11 @@ class ExtrinsicsWithWearer:
         return tuple(problems)
 
     def _details(self) -> dict[str, Json]:
-        found, draft = self._found, self._context.draft
+        solution, draft = self._found, self._context.draft
         quality: dict[str, Json] | None = None
         plan: Json = None
-        if found is not None and draft.extrinsics_quality is not None:
-            report = found.report
+        if solution is not None and draft.extrinsics_quality is not None:
+            report = solution.report
             quality = {
                 "rms_px": round(draft.extrinsics_quality.rms_px, 3),
                 "play_area_cm": None,
@@ -220,17 +220,17 @@ class ExtrinsicsWithWearer:
                 },
                 "match": round(report.match, 3),
             }
-            step = max(1, len(found.walked_m) // _SHOWN_PLACES)
+            step = max(1, len(solution.walked_m) // _SHOWN_PLACES)
             plan = {
-                **plan_of_cameras(found.rig),
-                "boards_m": np.round(found.walked_m[::step], 3).tolist(),
+                **plan_of_cameras(solution.rig),
+                "boards_m": np.round(solution.walked_m[::step], 3).tolist(),
             }
         return {
-            "stage": "done" if found is not None else "collect",
+            "stage": "done" if solution is not None else "collect",
             "solving": self._busy,
             "names": {camera.id: camera.label or camera.id for camera in draft.cameras},
             "seen_s": {} if self._walk is None else dict(self._walk.visible_s),
-            "floor_known": found is not None,
+            "floor_known": solution is not None,
             "quality": quality,
             "plan": plan,
             "actions": self._actions(),
