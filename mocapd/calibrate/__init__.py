@@ -1,1 +1,1 @@
-"""How a calibration is found out: intrinsics, extrinsics, colours, body shape, and whether a camera was bumped."""
+"""Computes a calibration: intrinsics, extrinsics, colours, body shape; and detects bumped cameras."""

@@ -1,1 +1,1 @@
-"""What is known before the first frame: the record, and the file it is kept in."""
+"""Calibration data that exist before the first frame, and the files that store them."""

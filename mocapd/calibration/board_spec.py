@@ -35,15 +35,15 @@ FEWEST_SQUARES: Mapping[BoardKind, int] = {BoardKind.CHARUCO: 3, BoardKind.CHESS
 
 @dataclass(frozen=True, slots=True)
 class BoardSpec:
-    """What is printed. Raises ConfigError when it cannot be.
+    """The printed pattern of a board. Raises ConfigError for an impossible one.
 
-    `columns` and `rows` count squares, not inner corners. `marker_m` and `dictionary` matter to
-    ChArUco only. `inverted`: white where other boards are black. `legacy`: the layout of OpenCV
-    before 4.6, which differs where `rows` is even. `two_sided`: the back bears the mirror image, so
-    that each corner has the same place on both sides.
+    `columns` and `rows` count squares, not inner corners. Only ChArUco uses `marker_m` and `dictionary`.
+    `inverted`: white where other boards are black. `legacy`: the layout of OpenCV before 4.6, which
+    differs where `rows` is even. `two_sided`: the back bears the mirror image, so each corner has the
+    same place on both sides.
 
-    The board's frame, seen from its printed side, of two the one that is not mirrored: x right along a
-    row, y down, z into the board, origin at the outer corner of the first square [m].
+    The board's frame, viewed from the printed side (two-sided: from the side that is not mirrored):
+    x right along a row, y down, z into the board, origin at the outer corner of the first square [m].
     """
 
     kind: BoardKind
@@ -82,9 +82,9 @@ class BoardSpec:
                 raise ConfigError(
                     "a plain chessboard looks the same from both sides",
                     _WHERE,
-                    "take a ChArUco board, whose markers tell front from back",
+                    "take a ChArUco board, whose markers distinguish front from back",
                 )
-            if not 0.0 <= self.marker_m < LARGEST_SQUARE_M:  # unused, but kept
+            if not 0.0 <= self.marker_m < LARGEST_SQUARE_M:  # not used, but stored
                 raise ConfigError(
                     f"a marker of {self.marker_m:g} m", _WHERE, "leave it out for a chessboard"
                 )
@@ -97,10 +97,10 @@ class BoardSpec:
                 _WHERE,
                 "give the side of a marker in metres; it is smaller than the square",
             )
-        known = len(_dictionary(self.dictionary).bytesList)
-        if known < self.columns * self.rows // 2:
+        available = len(_dictionary(self.dictionary).bytesList)
+        if available < self.columns * self.rows // 2:
             raise ConfigError(
-                f"{self.dictionary} has {known} markers, a board of {self.columns}x{self.rows} "
+                f"{self.dictionary} has {available} markers, a board of {self.columns}x{self.rows} "
                 f"squares needs {self.columns * self.rows // 2}",
                 _WHERE,
                 "give the dictionary that the board was printed with",
@@ -113,7 +113,7 @@ class BoardSpec:
 
     @property
     def turns_show(self) -> bool:
-        """Whether the board turned by half a turn can be told from the board as it was."""
+        """Whether a half turn of the board changes its pattern."""
         return self.kind is BoardKind.CHARUCO or (self.columns + self.rows) % 2 == 1
 
     def __str__(self) -> str:
@@ -163,8 +163,8 @@ def centre_m(spec: BoardSpec) -> Floats:
 def aruco_board(spec: BoardSpec, own_markers: bool = False) -> Any:
     """The board as cv2.aruco has it.
 
-    With `own_markers` its dictionary ends with the board's last marker: other boards' markers are
-    not seen then, and a picture is searched in a tenth of the time that a dictionary of 1000 takes.
+    With `own_markers` the dictionary ends with the board's last marker: the detector then ignores
+    markers of other boards, and takes a tenth of the time that a dictionary of 1000 takes.
     """
     dictionary = _dictionary(spec.dictionary)
     if own_markers:

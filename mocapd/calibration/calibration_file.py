@@ -1,4 +1,4 @@
-"""A saved calibration, `calibration.toml`: found, read, and checked value by value."""
+"""Finds, reads and checks a saved calibration, `calibration.toml`."""
 
 import logging
 from collections.abc import Mapping
@@ -31,21 +31,21 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoadedCalibration:
-    """A calibration as its file has it, and as a tracker takes it."""
+    """A calibration as the tables of its file, and as the record that a tracker takes."""
 
     path: Path
     tables: SavedCalibration
-    known: Calibration
+    calibration: Calibration
 
 
 def find_calibration(
     rig: Path | None, state_dir: Path, sources: Mapping[str, str]
 ) -> LoadedCalibration | None:
-    """The calibration that `rig` names; else that of the state directory, for its own cameras. sources: of the
-    configured cameras, by id.
+    """The calibration at `rig`, or else the one in the state directory if it belongs to the configured cameras.
+    sources: addresses of the configured cameras, by id.
 
-    None for a rig in the capture format, for cameras that bring a rig with them, and for others than
-    those that were calibrated. Raises InputError or ConfigError.
+    None for a rig in the capture format, for cameras that bring their own rig, and where other cameras
+    were calibrated. Raises InputError or ConfigError.
     """
     if rig is not None:
         path = calibration_path(rig)
@@ -70,24 +70,24 @@ def load_calibration(path: Path) -> LoadedCalibration:
 
 
 def from_saved(tables: SavedCalibration, path: Path) -> Calibration:
-    """What the tables know, with the pictures that they name, and without a rig where the cameras are not placed;
-    `path`: their file. Raises InputError or ConfigError."""
+    """The record of these tables with their pictures; without a rig where the cameras have no extrinsics.
+    `path`: the file of the tables. Raises InputError or ConfigError."""
     rig = tables.rig(str(path)) if tables.is_placed else None
-    wearer = tables.known_wearer()
-    colours = {one.id: one.colour for one in tables.camera if one.colour is not None}
+    wearer = tables.wearer_record()
+    colours = {camera.id: camera.colour for camera in tables.camera if camera.colour is not None}
     pictures = {
-        name: read_labelled(path.parent / one.picture, path.parent / one.strokes)
-        for name, one in colours.items()
+        name: read_labelled(path.parent / fit.picture, path.parent / fit.strokes)
+        for name, fit in colours.items()
     }
-    W = {name: np.array(one.W) for name, one in colours.items()}
+    W = {name: np.array(fit.W) for name, fit in colours.items()}
     personal = tables.wearer is not None and tables.wearer.personal_colours
     shirt = ShirtColours(personal_model(pictures, W) if personal else (), pictures)
     return Calibration(rig, wearer, shirt)
 
 
-def known_of_recording(saved: LoadedCalibration, origin: Origin) -> Calibration:
-    """What the calibration knows of a capture that its cameras recorded; the capture tells the stature
-    where it does not. Raises ConfigError when they did not."""
+def calibration_of_recording(saved: LoadedCalibration, origin: Origin) -> Calibration:
+    """The calibration for a capture of the same cameras. The capture gives the stature where the calibration has none.
+    Raises ConfigError when the cameras differ."""
     sizes = {camera.id: camera.size_px for camera in saved.tables.camera}
     for camera in origin.rig.cameras:
         if camera.name not in sizes:
@@ -98,7 +98,7 @@ def known_of_recording(saved: LoadedCalibration, origin: Origin) -> Calibration:
             )
         if sizes[camera.name] != camera.size_px:
             raise size_error(origin.rig_source, camera.name, camera.size_px, sizes[camera.name])
-    return Calibration(wearer=Wearer(origin.stature_m)).overlaid(saved.known)
+    return Calibration(wearer=Wearer(origin.stature_m)).overlaid(saved.calibration)
 
 
 def calibration_path(place: Path) -> Path:
@@ -107,9 +107,9 @@ def calibration_path(place: Path) -> Path:
 
 
 def read_calibration(path: Path) -> SavedCalibration:
-    """The calibration in a file, its sources with their passwords, as far as those are kept beside it.
+    """The calibration in a file, with the passwords of its sources as far as its folder stores them.
 
-    Raises InputError when there is none, ConfigError naming file and key when it is damaged.
+    Raises InputError for a missing file, ConfigError naming file and key for a damaged one.
     """
     try:
         saved = read_tables(path)
@@ -125,15 +125,15 @@ def read_calibration(path: Path) -> SavedCalibration:
 
 
 def read_setup(path: Path) -> SavedCalibration:
-    """As much of a calibration as a setup in progress has found; sources without passwords.
+    """The partial calibration of a setup in progress; sources without passwords.
 
-    Raises MissingError when there is none, InputError, or ConfigError naming file and key when it is damaged.
+    Raises MissingError for a missing file, InputError, or ConfigError naming file and key for a damaged one.
     """
     return read_tables(path, MOST_SETUP_BYTES)
 
 
 def read_tables(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
-    """The tables as they stand in the file. Raises as `read_setup`."""
+    """The tables exactly as in the file. Raises as `read_setup`."""
     where = str(path)
     text = read_text(path, most_bytes)
     try:
@@ -142,10 +142,10 @@ def read_tables(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
         raise ConfigError(f"not valid TOML ({error.what})", where, _RECALIBRATE) from None
     schema = data.get("schema")
     if schema != SCHEMA:
-        told = "has no 'schema'" if schema is None else f"has schema {brief(schema)}"
+        problem = "has no 'schema'" if schema is None else f"has schema {brief(schema)}"
         newer = isinstance(schema, int) and schema > SCHEMA
         raise (NewerFileError if newer else ConfigError)(
-            f"{told}, this mocapd reads schema {SCHEMA}",
+            f"{problem}, this mocapd reads schema {SCHEMA}",
             where,
             "use the mocapd that wrote it, or calibrate again (`mocapd calibrate`)",
         )
@@ -168,12 +168,12 @@ def read_tables(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
 
 
 def _fits(tables: SavedCalibration, sources: Mapping[str, str]) -> bool:
-    """Whether each of these cameras was calibrated, by id and source."""
+    """Whether the calibration contains each of these cameras with its id and source."""
     calibrated = {camera.id: _model(camera.source) for camera in tables.camera}
     return all(calibrated.get(name) == _model(source) for name, source in sources.items())
 
 
 def _model(source: str) -> object:
-    """What two addresses of one camera share: a webcam may be at another USB port, a password hidden in one of them."""
+    """An identity of a camera that ignores the USB port of a webcam, and the password of an address."""
     identity = identity_of(source)
     return identity.model if identity is not None else without_password(source)

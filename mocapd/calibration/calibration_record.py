@@ -1,4 +1,4 @@
-"""All that is known before the first frame, whoever says it: rig, wearer, and the colours of the shirt."""
+"""The calibration record, from any source: rig, wearer, and the colours of the shirt."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -8,15 +8,15 @@ from mocapd.types import Floats, LabelledPicture, Rig
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Wearer:
-    """stature_m: the height [m]; shape_factors (N_FACTORS,): the proportions on the mean body, as measured.
-    None: not known. has_shirt: whether there is a shirt to be tracked by."""
+    """stature_m: the height [m]; shape_factors (N_FACTORS,): measured proportions relative to the mean body.
+    None: unknown. has_shirt: whether the wearer has a shirt for the tracker."""
 
     stature_m: float | None = None
     shape_factors: Floats | None = None
     has_shirt: bool = True
 
     def overlaid(self, stronger: "Wearer") -> "Wearer":
-        """What the stronger knows, and this where it knows nothing."""
+        """Field by field the stronger record's value, or this one's where that is unknown."""
         return Wearer(
             self.stature_m if stronger.stature_m is None else stronger.stature_m,
             self.shape_factors if stronger.shape_factors is None else stronger.shape_factors,
@@ -26,8 +26,8 @@ class Wearer:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShirtColours:
-    """model: the shirt in neutral light, none for its standard; white_balance: by camera, the shirt in the
-    place's own light."""
+    """model: the shirt in neutral light, empty for the standard shirt; white_balance: by camera, the shirt in
+    the light of the place."""
 
     model: tuple[LabelledPicture, ...] = ()
     white_balance: Mapping[str, LabelledPicture] = field(default_factory=dict)
@@ -41,15 +41,15 @@ class ShirtColours:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibration:
-    """None: nobody says. Readers are in `calibration`, `session` and `wizard`; a tracker refuses what it
-    needs and is not given."""
+    """None: no value available. Readers are in `calibration`, `session` and `wizard`; a tracker refuses to
+    start without a value that it needs."""
 
     rig: Rig | None = None
     wearer: Wearer = field(default_factory=Wearer)
     shirt: ShirtColours | None = None
 
     def overlaid(self, stronger: "Calibration") -> "Calibration":
-        """Field by field what the stronger knows, and this where it knows nothing."""
+        """Field by field the stronger record's value, or this one's where that is unknown."""
         shirt = self.shirt or stronger.shirt
         if self.shirt is not None and stronger.shirt is not None:
             shirt = self.shirt.overlaid(stronger.shirt)
@@ -60,5 +60,5 @@ class Calibration:
         )
 
     def assuming(self, stature_m: float) -> "Calibration":
-        """The same of a wearer of this height [m], where nobody says."""
+        """The same, with this height of the wearer [m] where none is known yet."""
         return Calibration(wearer=Wearer(stature_m)).overlaid(self)

@@ -1,4 +1,4 @@
-"""`calibration.toml`, written whole or not at all, with its pictures and passwords beside it."""
+"""Writes `calibration.toml` atomically, with its pictures and passwords in the same folder."""
 
 import hashlib
 import logging
@@ -20,10 +20,10 @@ from mocapd.calibration.calibration_file import MOST_SETUP_BYTES, read_calibrati
 from mocapd.calibration.saved_calibration import ColourFit, SavedCalibration
 from mocapd.calibration.saved_sources import (
     SECRETS,
-    keep_sources,
-    known_sources,
+    masked_sources,
     passwords_of,
-    shown_sources,
+    store_sources,
+    stored_sources,
 )
 from mocapd.calibration.toml_text import toml_text
 from mocapd.errors import CannotCreateError, InputError, MocapdError, NewerFileError
@@ -38,7 +38,7 @@ _HEADER = """\
 # The calibration of mocapd's cameras, made by `mocapd calibrate`, read by `mocapd run`.
 # Lengths are in metres, pixels where a name ends in _px; y points up from the floor. The pictures
 # that the colours were read from lie in the folder colours/ beside this file, and show the wearer.
-# The one before is kept beside it under the same name with .previous: rename it to go back.
+# The previous calibration lies in the same folder, with .previous in its name: rename it to go back.
 
 """
 CALIBRATION_KIND = FileKind(
@@ -54,23 +54,23 @@ def write_calibration(
     pictures: Mapping[str, LabelledPicture],
     own_folder: bool = True,
 ) -> None:
-    """Write the file, and make its folder if need be; the one before is kept as NAME.previous.toml, or set aside where
-    this mocapd cannot read it.
+    """Write the file, and create its folder if needed. An earlier file becomes NAME.previous.toml, or goes into
+    quarantine where this mocapd cannot read it.
 
-    pictures: by camera id the picture with the strokes that its `colour` is from.
-    Nobody else may read any of it; own_folder: nor look into the folder, which is narrowed if need be.
-    The file comes last, so what was there stays in force until all is written.
-    Raises CannotCreateError, or ConfigError where passwords are kept and cannot be read.
+    pictures: by camera id the picture with strokes that gave the camera's `colour`.
+    Only the user may read the files. own_folder: the folder's permissions are restricted, too.
+    The file comes last, so the earlier one stays in force until all is written.
+    Raises CannotCreateError, or ConfigError where stored passwords cannot be read.
     """
     folder = path.parent
-    known = {**known_sources(folder), **passwords_of(saved)}
+    addresses = {**stored_sources(folder), **passwords_of(saved)}
     try:
         if own_folder:
             private_folder(folder)
         text = _text(_with_pictures(folder, saved, pictures))
         if not is_absent(path):
-            known = {**_keep_before(path), **known}
-        _write(path, text, known)
+            addresses = {**_keep_before(path), **addresses}
+        _write(path, text, addresses)
         _tidy(path)
     except OSError as error:
         raise _cannot_write(error, path) from None
@@ -79,13 +79,13 @@ def write_calibration(
 def write_setup(
     path: Path, saved: SavedCalibration, pictures: Mapping[str, LabelledPicture]
 ) -> None:
-    """Write a setup in progress likewise, without passwords and in place of the one before. Raises CannotCreateError."""
+    """Write a setup in progress in the same way, without passwords and without a .previous file. Raises CannotCreateError."""
     try:
         private_folder(path.parent)
         text = _text(_with_pictures(path.parent, saved, pictures))
         if len(text) > MOST_SETUP_BYTES:
             raise CannotCreateError(
-                f"would have {len(text)} bytes, at most {MOST_SETUP_BYTES} are kept", str(path)
+                f"would have {len(text)} bytes, at most {MOST_SETUP_BYTES} are allowed", str(path)
             )
         with whole_file(path, private=True) as partial:
             partial.write_text(text, encoding="utf-8")
@@ -95,7 +95,7 @@ def write_setup(
 
 
 def remove_setup(path: Path) -> None:
-    """Remove a setup in progress with its pictures, those of files set aside beside it excepted. Raises OSError."""
+    """Remove a setup in progress with its pictures, except pictures of files in quarantine. Raises OSError."""
     if not path.exists():
         return
     now_s = path.stat().st_mtime
@@ -104,37 +104,40 @@ def remove_setup(path: Path) -> None:
 
 
 def rewrite_sources(path: Path, sources: Mapping[str, str]) -> None:
-    """Give cameras of the saved calibration, by id, another source: they were plugged in elsewhere.
+    """Change sources of cameras in the saved calibration, by id, after the user plugged them in elsewhere.
 
-    Raises InputError, ConfigError or CannotCreateError; the file stays as it was then.
+    Raises InputError, ConfigError or CannotCreateError; then the file is unchanged.
     """
     saved = read_calibration(path)
     cameras = tuple(
-        msgspec.structs.replace(one, source=sources.get(one.id, one.source)) for one in saved.camera
+        msgspec.structs.replace(camera, source=sources.get(camera.id, camera.source))
+        for camera in saved.camera
     )
     saved = msgspec.structs.replace(saved, camera=cameras)
-    known = {**known_sources(path.parent), **passwords_of(saved)}
+    addresses = {**stored_sources(path.parent), **passwords_of(saved)}
     try:
-        _write(path, _text(saved), known)
+        _write(path, _text(saved), addresses)
     except OSError as error:
         raise _cannot_write(error, path) from None
 
 
-def _write(path: Path, text: str, known: Mapping[tuple[str, str], str]) -> None:
+def _write(path: Path, text: str, addresses: Mapping[tuple[str, str], str]) -> None:
     """The passwords first: without them the file would say too little."""
-    keep_sources(path.parent, known, text + _named(path.parent))
+    store_sources(path.parent, addresses, text + _texts_of(path.parent))
     with whole_file(path, private=True) as partial:
         partial.write_text(text, encoding="utf-8")
 
 
 def _keep_before(path: Path) -> dict[tuple[str, str], str]:
-    """The calibration that is there becomes the previous one, and that stays where this one is of no use; the
-    passwords that earlier versions kept within it. Raises OSError."""
+    """Rename the existing calibration to .previous, or put it into quarantine where it cannot be read.
+
+    Returns the passwords that an earlier version wrote into it. Raises OSError.
+    """
     try:
         saved = read_tables(path)
     except MocapdError as error:
-        aside = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
-        _log.warning("%s cannot be used (%s), and is kept as %s", path, error.what, aside.name)
+        quarantined = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
+        _log.warning("%s cannot be used (%s), and is now %s", path, error.what, quarantined.name)
         return {}
     passwords = dict(passwords_of(saved))
     before = _text(saved).encode() if passwords else path.read_bytes()
@@ -156,14 +159,14 @@ def _cannot_write(error: OSError, path: Path) -> CannotCreateError:
 
 
 def _text(saved: SavedCalibration) -> str:
-    tables: dict[str, Any] = msgspec.to_builtins(shown_sources(saved), builtin_types=(datetime,))
+    tables: dict[str, Any] = msgspec.to_builtins(masked_sources(saved), builtin_types=(datetime,))
     return _HEADER + toml_text(tables)
 
 
 def _with_pictures(
     folder: Path, saved: SavedCalibration, pictures: Mapping[str, LabelledPicture]
 ) -> SavedCalibration:
-    """The tables with the names of the pictures' files, which are written. Raises OSError."""
+    """Write the pictures, and return the tables with their file names. Raises OSError."""
     private_folder(folder / COLOURS)
     cameras = []
     for camera in saved.camera:
@@ -177,7 +180,7 @@ def _with_pictures(
 def _with_files(
     folder: Path, camera: str, labelled: LabelledPicture, colour: ColourFit
 ) -> ColourFit:
-    """Pictures are named by their content: one that is there already is the same one."""
+    """File names contain a hash of the content: an existing file of that name is identical."""
     picture, drawn = _png(labelled.pixels), _png(labelled.labels)
     stem = re.sub(r"[^\w.-]", "_", camera)
     mark = hashlib.sha256(picture + drawn).hexdigest()[:12]
@@ -198,25 +201,25 @@ def _png(pixels: Bytes) -> bytes:
     return bytes(cv2.imencode(".png", pixels)[1])
 
 
-def _named(folder: Path) -> str:
-    """What the calibrations of a folder say, and those that were set aside."""
-    said = b""
+def _texts_of(folder: Path) -> str:
+    """All calibrations of a folder as text, those in quarantine included."""
+    content = b""
     for path in folder.glob("*.toml*"):
         if path.name != SECRETS:
-            with suppress(InputError):  # none of ours
-                said += read_file(path, MOST_SETUP_BYTES)
-    return said.decode("utf-8", "replace")
+            with suppress(InputError):  # not a file of mocapd
+                content += read_file(path, MOST_SETUP_BYTES)
+    return content.decode("utf-8", "replace")
 
 
 def _tidy(path: Path) -> None:
-    """Remove what was half written, and pictures of ours that no calibration here names any more."""
+    """Remove partial files, and pictures of ours that no calibration in the folder names."""
     _tidy_folder(path.parent, path.stat().st_mtime)
 
 
 def _tidy_folder(folder: Path, now_s: float) -> None:
     tidy(folder, now_s)
     tidy(folder / COLOURS, now_s)
-    named = _named(folder)
+    texts = _texts_of(folder)
     for picture in (folder / COLOURS).iterdir():
-        if _PICTURE.fullmatch(picture.name) and picture.name not in named:
+        if _PICTURE.fullmatch(picture.name) and picture.name not in texts:
             picture.unlink()

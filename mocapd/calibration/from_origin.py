@@ -1,4 +1,4 @@
-"""What a recording or a scenario knows."""
+"""The calibration record of a recording or a scenario."""
 
 from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
 from mocapd.capture.capture_folder import CaptureFolder

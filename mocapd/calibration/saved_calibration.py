@@ -1,4 +1,4 @@
-"""The tables of `calibration.toml`: what a finished setup leaves behind, and as much of it as one in progress has found."""
+"""The tables of `calibration.toml`, of a finished setup or one in progress."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -29,11 +29,11 @@ _MOST_CORNERS = msgspec.Meta(max_length=10_000)
 
 
 class _Table(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """A table of the file. A key that is not known is of a newer mocapd, and ignored."""
+    """A table of the file. Unknown keys come from a newer mocapd, and are ignored."""
 
 
 class Made(_Table, frozen=True, kw_only=True):
-    """When (UTC), by whom (login name), and with which mocapd."""
+    """Time (UTC), login name, and version of mocapd."""
 
     when: datetime
     by: str
@@ -41,7 +41,7 @@ class Made(_Table, frozen=True, kw_only=True):
 
 
 class RoomFit(_Table, frozen=True, kw_only=True):
-    """How the room was found and how well it fits; a figure that the method cannot tell is absent."""
+    """The method of the extrinsics, and their fit. A figure that the method cannot give is absent."""
 
     method: Literal["board", "wearer"]
     rms_px: NotNegative | None = None
@@ -50,9 +50,9 @@ class RoomFit(_Table, frozen=True, kw_only=True):
 
 
 class SavedWearer(_Table, frozen=True, kw_only=True):
-    """stature_m [m]; proportions: factors on the mean body, by name; personal_colours: whether the
-    colours of the wearer's own shirt, from the strokes, replace the standard; has_shirt: whether there is one at all, which
-    files of earlier versions do not say."""
+    """stature_m [m]; proportions: factors on the mean body, by name; personal_colours: whether the colours of
+    the wearer's own shirt, from the strokes, replace the standard; has_shirt: whether the wearer has a shirt. Files of
+    earlier versions lack `has_shirt`."""
 
     stature_m: Annotated[float, msgspec.Meta(ge=0.8, le=2.5)] | None = None
     proportions: dict[Literal[FACTORS], Factor] | None = None  # type: ignore[valid-type]
@@ -61,9 +61,9 @@ class SavedWearer(_Table, frozen=True, kw_only=True):
 
 
 class LensFit(_Table, frozen=True, kw_only=True):
-    """How well the lens fits; free: which of k1 k2 p1 p2 k3 were solved for; from_earlier: whether it
-    was taken over from an earlier setup. Of a setup in progress also K and dist of this camera alone, and the indices of
-    the pictures that were used and thrown out."""
+    """How well the lens fits; free: which of k1 k2 p1 p2 k3 were solved for; from_earlier: whether an earlier
+    setup gave it. A setup in progress adds K and dist of this camera alone, and the indices of the pictures that the
+    solver used and rejected."""
 
     rms_px: NotNegative | None = None
     held_out_px: NotNegative | None = None
@@ -78,8 +78,8 @@ class LensFit(_Table, frozen=True, kw_only=True):
 
 
 class ColourFit(_Table, frozen=True, kw_only=True):
-    """Files beside this one: a picture of the wearer and the strokes on it (0 none, 1..10 the colour
-    id); W: model_from_camera on RGB 0..1, solved from them."""
+    """Files in the same folder: a picture of the wearer and the strokes on it (0 none, 1..10 the colour id); W:
+    model_from_camera on RGB 0..1, solved from them."""
 
     picture: Text
     strokes: Text
@@ -97,9 +97,9 @@ class SavedBoardView(_Table, frozen=True, kw_only=True):
 
 
 class SavedCamera(_Table, frozen=True, kw_only=True):
-    """One camera. label: what the person calls it; source: what a configuration calls it, its password
-    hidden; K, dist (k1 k2 p1 p2 k3) [px]; camera_from_world R, t_m [m], absent where the cameras are not placed;
-    rms_px: of its part of the room; controls: what it is locked to; board_view: of a setup in progress."""
+    """One camera. label: the user's name for it; source: its address in a configuration, password masked; K, dist
+    (k1 k2 p1 p2 k3) [px]; camera_from_world R, t_m [m], absent before the extrinsics are solved; rms_px: reprojection
+    error of the extrinsics; controls: locked webcam controls; board_view: only of a setup in progress."""
 
     id: Text
     label: str = ""
@@ -124,8 +124,8 @@ class SavedSetup(_Table, frozen=True, kw_only=True):
 
 
 class SavedCalibration(_Table, frozen=True, kw_only=True):
-    """The whole file. `board`: what it was made with; `wearer` is None where only cameras were calibrated; `setup`: only of
-    one in progress, which may lack the room and the cameras' places."""
+    """The whole file. `board`: the calibration board; `wearer`: None where only cameras were calibrated; `setup`: only of
+    a setup in progress, which may lack the room and the cameras' extrinsics."""
 
     schema: int
     made: Made
@@ -137,19 +137,19 @@ class SavedCalibration(_Table, frozen=True, kw_only=True):
 
     @property
     def is_placed(self) -> bool:
-        """Whether it says where all cameras are."""
+        """Whether the file contains the extrinsics of all cameras."""
         return self.room is not None and all(
-            None not in (one.K, one.dist, one.R, one.t_m) for one in self.camera
+            None not in (camera.K, camera.dist, camera.R, camera.t_m) for camera in self.camera
         )
 
     def rig(self, where: str) -> Rig:
-        """The cameras of one that is placed. Raises ConfigError naming camera and field; `where`: the file."""
-        rig = Rig(tuple(camera_from_dict(_entry(one), where) for one in self.camera))
+        """The rig; needs `is_placed`. Raises ConfigError naming camera and field; `where`: the file."""
+        rig = Rig(tuple(camera_from_dict(_entry(camera), where) for camera in self.camera))
         require_plausible(rig, where)
         return rig
 
-    def known_wearer(self) -> Wearer:
-        """The wearer as a tracker takes it; a proportion that the file leaves out is the mean body's."""
+    def wearer_record(self) -> Wearer:
+        """The wearer's record; proportions that the file lacks are those of the mean body."""
         saved = self.wearer
         if saved is None:
             return Wearer()

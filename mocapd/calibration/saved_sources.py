@@ -1,7 +1,7 @@
-"""Sources of cameras in a saved calibration: passwords lie in a file of their own, for us alone.
+"""Sources of cameras in a saved calibration: passwords lie in a file of their own, readable by the user alone.
 
-A calibration is shown, sent to others and asked about; the address of a network camera stands in it
-with `***`, and is completed when it is read.
+Users show a calibration and send it to others, so its addresses of network cameras have `***` as password. The reader
+puts the password back.
 """
 
 from collections.abc import Iterable, Mapping
@@ -23,12 +23,12 @@ SCHEMA = 1
 
 _MOST_BYTES = 256_000
 _HEADER = """\
-# The addresses of network cameras with their passwords, kept by `mocapd calibrate` for the
-# calibrations beside this file. Nobody else may read it, and nobody else needs it.
+# The addresses of network cameras with their passwords, written by `mocapd calibrate` for the
+# calibrations in this folder. Only their user can read this file; no other program needs it.
 
 """
 
-Known = Mapping[tuple[str, str], str]  # id and address as it is shown: the true address
+MaskedToTrue = Mapping[tuple[str, str], str]  # camera id and masked address: the true address
 
 
 class _Camera(msgspec.Struct, frozen=True):
@@ -37,14 +37,14 @@ class _Camera(msgspec.Struct, frozen=True):
 
 
 class _File(msgspec.Struct, frozen=True):
-    """schema: what does not say it is of the first."""
+    """schema: a file without it has schema 1."""
 
     schema: int = SCHEMA
     camera: tuple[_Camera, ...] = ()
 
 
-def known_sources(folder: Path) -> Known:
-    """What is kept beside the calibrations of a folder. Raises InputError or ConfigError."""
+def stored_sources(folder: Path) -> MaskedToTrue:
+    """The addresses with passwords in the secrets file of a folder. Raises InputError or ConfigError."""
     path = folder / SECRETS
     try:
         text = read_text(path, _MOST_BYTES)
@@ -62,58 +62,59 @@ def known_sources(folder: Path) -> Known:
             str(path),
             "use the mocapd that wrote it, or move it away and set the cameras up again",
         )
-    return sources_by_shown((one.id, one.source) for one in file.camera)
+    return sources_by_masked((camera.id, camera.source) for camera in file.camera)
 
 
-def passwords_of(saved: SavedCalibration) -> Known:
+def passwords_of(saved: SavedCalibration) -> MaskedToTrue:
     """The sources with a password in them."""
-    return sources_by_shown(
-        (one.id, one.source) for one in saved.camera if has_password(one.source)
+    return sources_by_masked(
+        (camera.id, camera.source) for camera in saved.camera if has_password(camera.source)
     )
 
 
-def keep_sources(folder: Path, known: Known, named_in: str) -> None:
-    """Write those of `known` that the calibrations of the folder name; `named_in`: their texts.
+def store_sources(folder: Path, addresses: MaskedToTrue, calibrations: str) -> None:
+    """Write those addresses that appear in `calibrations`, the text of the folder's calibrations.
 
     Raises OSError.
     """
     path = folder / SECRETS
-    kept = [
+    entries = [
         {"id": name, "source": source}
-        for (name, shown), source in known.items()
-        if _quoted(shown) in named_in
+        for (name, masked), source in addresses.items()
+        if _toml_escape(masked) in calibrations
     ]
-    if not kept:
+    if not entries:
         path.unlink(missing_ok=True)
         return
     with whole_file(path, private=True) as partial:
         partial.write_text(
-            _HEADER + tomli_w.dumps({"schema": SCHEMA, "camera": kept}), encoding="utf-8"
+            _HEADER + tomli_w.dumps({"schema": SCHEMA, "camera": entries}), encoding="utf-8"
         )
 
 
-def shown_sources(saved: SavedCalibration) -> SavedCalibration:
+def masked_sources(saved: SavedCalibration) -> SavedCalibration:
     """The same without passwords."""
-    return _with_sources(saved, [without_password(one.source) for one in saved.camera])
+    return _with_sources(saved, [without_password(camera.source) for camera in saved.camera])
 
 
 def complete_sources(saved: SavedCalibration, folder: Path) -> SavedCalibration:
-    """The same with the passwords that are kept in its folder; what is not stays as it is shown. Raises as
-    `known_sources`."""
-    if not any(is_masked(one.source) for one in saved.camera):
+    """The same with passwords from the folder's secrets file; an address without an entry stays masked. Raises as
+    `stored_sources`."""
+    if not any(is_masked(camera.source) for camera in saved.camera):
         return saved
-    known = known_sources(folder)
+    addresses = stored_sources(folder)
     return _with_sources(
-        saved, [known.get((one.id, one.source), one.source) for one in saved.camera]
+        saved,
+        [addresses.get((camera.id, camera.source), camera.source) for camera in saved.camera],
     )
 
 
 def require_password(camera: str, source: str, place: str) -> str:
-    """A source that can be opened. Raises ConfigError where its password is not kept; `place`: where
-    it should be."""
+    """The source, if it can be opened. Raises ConfigError where the password is missing; `place`: the folder of the
+    secrets file."""
     if is_masked(source):
         raise ConfigError(
-            f"the password of camera {camera!r} is not kept with the calibration ({source})",
+            f"the password of camera {camera!r} is not stored with the calibration ({source})",
             place,
             f"write its whole address, as [[camera]] with id and source, into {SECRETS} there, or"
             " into the configuration",
@@ -121,19 +122,19 @@ def require_password(camera: str, source: str, place: str) -> str:
     return source
 
 
-def sources_by_shown(sources: Iterable[tuple[str, str]]) -> dict[tuple[str, str], str]:
-    """Of pairs of an id and a true source, those sources by id and what is shown of them."""
+def sources_by_masked(sources: Iterable[tuple[str, str]]) -> dict[tuple[str, str], str]:
+    """Pairs of camera id and true address, as a mapping from id and masked address to the true address."""
     return {(name, without_password(source)): source for name, source in sources}
 
 
-def _quoted(text: str) -> str:
-    """As it stands between the quotes of a file of ours."""
+def _toml_escape(text: str) -> str:
+    """The text as TOML escapes it between quotes."""
     return tomli_w.dumps({"v": text})[len('v = "') : -len('"\n')]
 
 
 def _with_sources(saved: SavedCalibration, sources: Iterable[str]) -> SavedCalibration:
     cameras = tuple(
-        msgspec.structs.replace(one, source=source)
-        for one, source in zip(saved.camera, sources, strict=True)
+        msgspec.structs.replace(camera, source=source)
+        for camera, source in zip(saved.camera, sources, strict=True)
     )
     return msgspec.structs.replace(saved, camera=cameras)

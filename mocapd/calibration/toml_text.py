@@ -1,4 +1,4 @@
-"""Tables as TOML that people read: a row of numbers on one line, and no key without a value."""
+"""Readable TOML: a row of numbers on one line, and no key without a value."""
 
 import re
 from collections.abc import Mapping

@@ -76,8 +76,8 @@ def track(
 
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.calibration.calibration_file import (
+        calibration_of_recording,
         calibration_path,
-        known_of_recording,
         load_calibration,
     )
     from mocapd.calibration.from_origin import from_origin
@@ -102,7 +102,7 @@ def track(
             known = from_origin(origin)
         else:
             saved = load_calibration(calibration_path(calibration))
-            known = known_of_recording(saved, origin)
+            known = calibration_of_recording(saved, origin)
         checked = check_capture(origin, known.rig, known.wearer.stature_m)
         ready = ready_tracker(
             own.name,

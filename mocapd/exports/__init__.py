@@ -1,1 +1,1 @@
-"""Files of motion for other programs, one format a folder: what is written is read back by another library in the tests."""
+"""Motion files for other programs, one format a folder; tests read the files with other libraries."""

@@ -1,4 +1,4 @@
-"""The formats that a recording can be exported to: one line each in FORMATS."""
+"""The export formats of a recording: one line each in FORMATS."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,9 +19,9 @@ from mocapd.output_file import FileKind, OutputFile, kind_by_magic
 
 @dataclass(frozen=True, slots=True)
 class ExportFormat:
-    """One format. write: the motion, where to, the name that the file will have; frames_in: how many frames a file
-    that was written holds; most_frames: how many it can hold, by the number of joints; takes_z_up: the format itself has
-    no axis that is up, or can say which; keeps_all_joints: it needs joints that nobody saw, and leaves them unmoved."""
+    """One format. write: takes the motion, the path to write to, and the final file name; frames_in: the number of frames
+    in a written file; most_frames: the largest number of frames, by the number of joints; takes_z_up: the format has no
+    fixed up axis, or can name it; keeps_all_joints: it needs joints that no camera saw, and leaves them unmoved."""
 
     write: Callable[[SampledMotion, Path, str], None]
     frames_in: Callable[[Path], int]
@@ -86,27 +86,27 @@ KINDS: Mapping[str, FileKind] = MappingProxyType(
 def export_file(
     name: str, path: Path, force: bool = False, inputs: Sequence[Path] = ()
 ) -> OutputFile:
-    """Where the format of this name is written. For the rest see OutputFile."""
+    """The output file of an export in the format of this name. For the rest see OutputFile."""
     return OutputFile(path, KINDS[name], force, inputs)
 
 
 def write_export(motion: SampledMotion, name: str, out: OutputFile | Path) -> None:
-    """Write the format of this name, whole or not at all.
+    """Write the format of this name, atomically.
 
     Raises InputError where the format cannot hold the motion, CannotCreateError where the file cannot be written, or
-    holds fewer frames than were to be written.
+    holds fewer frames than the motion.
     """
     out = export_file(name, out) if isinstance(out, Path) else out
-    chosen, frames = FORMATS[name], len(motion.joints_m)
-    most = chosen.most_frames(len(motion.skeleton.names))
+    export_format, frames = FORMATS[name], len(motion.joints_m)
+    most = export_format.most_frames(len(motion.skeleton.names))
     if frames > most:
         raise too_long(frames, most, motion.rate_hz, name.upper(), str(out.path))
     with out.writing() as partial:
-        chosen.write(motion, partial, out.path.name)
-        held = chosen.frames_in(partial)
-        if held != frames:
+        export_format.write(motion, partial, out.path.name)
+        written = export_format.frames_in(partial)
+        if written != frames:
             raise CannotCreateError(
-                f"{held} of {frames} frames are readable in what was written",
+                f"{written} of {frames} frames are readable in what was written",
                 str(out.path),
                 "choose another place by --out; if that does not help, another format by --to",
             )

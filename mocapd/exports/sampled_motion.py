@@ -1,4 +1,4 @@
-"""A person's motion at a constant rate: what every format writes."""
+"""A person's motion at a constant rate: the input of every format."""
 
 import math
 from collections.abc import Sequence
@@ -15,17 +15,17 @@ from mocapd.types import Bytes, Floats, Ints, Skeleton
 NS = 1e-9
 MOST_FRAMES = 10_000_000  # more than a day at 100 Hz
 RATES_HZ = (1.0, 1000.0)
-LONGEST_HELD_S = 0.25  # between two poses, before what lies between is a gap
+LONGEST_HELD_S = 0.25  # between two poses: longer without a pose is a gap
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SampledMotion:
-    """F frames of J joints in the world of mocapd, rate_hz apart from time 0.
+    """F frames of J joints in mocapd's world, rate_hz apart from time 0.
 
     skeleton: names, parents and T-pose of the recording; joints_m (F,J,3) [m]; global_xyzw (F,J,4): relative to the
-    T-pose; confidence (F,J) 0..1; gap (F,): nobody was tracked: the pose is carried over from before to after;
-    uncertainty_m (F,J): one standard deviation of each joint's place [m], inf where it is unknown; up: the axis that
-    points up, y but for z_up; unmoved: joints whose motion is not exported, by formats that need them all the same.
+    T-pose; confidence (F,J) 0..1; gap (F,): no person was tracked, and the pose is interpolated across the gap;
+    uncertainty_m (F,J): one standard deviation of each joint's position [m], inf where unknown; up: the up axis, y unless
+    z_up changed it; unmoved: joints without exported motion, of formats that need the joints nevertheless.
     """
 
     rate_hz: float
@@ -54,20 +54,20 @@ class SampledMotion:
     @property
     def local_xyzw(self) -> Floats:
         """Rotations (F,J,4) relative to the parent's."""
-        return np.stack([local_from_global(self.skeleton, one) for one in self.global_xyzw])
+        return np.stack([local_from_global(self.skeleton, frame) for frame in self.global_xyzw])
 
     @property
     def local_positions_m(self) -> Floats:
-        """Of each joint in its parent's turned frame (F,J,3) [m]; of the root in the world.
+        """Of each joint in its parent's rotated frame (F,J,3) [m]; of the root in the world.
 
-        Near the rest offsets, but not them: a tracker that learns the body changes its bones meanwhile.
+        They differ slightly from the rest offsets: a tracker that learns the body changes bone lengths meanwhile.
         """
         parents = self.skeleton.parents
         above = np.maximum(parents, 0)
         apart_m = self.joints_m - self.joints_m[:, above]
-        turned = rotations.rotate(rotations.inverse(self.global_xyzw[:, above]), apart_m)
-        turned[:, parents < 0] = self.joints_m[:, parents < 0]
-        return turned
+        positions_m = rotations.rotate(rotations.inverse(self.global_xyzw[:, above]), apart_m)
+        positions_m[:, parents < 0] = self.joints_m[:, parents < 0]
+        return positions_m
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,10 +81,10 @@ class Samples:
     uncertainty_m: Floats
 
 
-def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMotion:
-    """The motion at a constant rate from the first sample on: places linearly, rotations on the shortest arc.
+def resample(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMotion:
+    """The motion at a constant rate from the first sample on: linear interpolation of positions, slerp of rotations.
 
-    There is one sample at least. Raises InputError where there would be too many frames.
+    Needs at least one sample. Raises InputError for too many frames.
     """
     times_ns = samples.times_ns
     at_s = (times_ns - times_ns[0]) * NS
@@ -100,23 +100,23 @@ def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMo
     nearest_s = np.minimum(share, 1.0 - share) * between_s
     is_apart = (between_s > LONGEST_HELD_S) & (nearest_s > 0.5 / rate_hz)
 
-    def mixed(values: Floats) -> Floats:
+    def lerp(values: Floats) -> Floats:
         weights = share.reshape(-1, *[1] * (values.ndim - 1))
-        found: Floats = (1.0 - weights) * values[before] + weights * values[after]
-        return found
+        result: Floats = (1.0 - weights) * values[before] + weights * values[after]
+        return result
 
-    turned = rotations.slerp(
+    global_xyzw = rotations.slerp(
         samples.global_xyzw[before], samples.global_xyzw[after], share[:, None]
     )
-    confidence = mixed(samples.confidence)
+    confidence = lerp(samples.confidence)
     confidence[is_apart] = 0.0
     at_worst = np.maximum(samples.uncertainty_m[before], samples.uncertainty_m[after])
     at_worst[is_apart] = np.inf
     return SampledMotion(
         rate_hz,
         skeleton,
-        mixed(samples.joints_m),
-        turned,
+        lerp(samples.joints_m),
+        global_xyzw,
         confidence,
         is_apart.astype(np.uint8),
         at_worst,
@@ -126,7 +126,7 @@ def resampled(samples: Samples, skeleton: Skeleton, rate_hz: float) -> SampledMo
 def too_long(
     count: int, most: int, rate_hz: float, name: str = "a file", where: str = ""
 ) -> InputError:
-    """The error of `count` frames where `name` holds `most`, with the rate at which they would fit."""
+    """The error for `count` frames where `name` holds `most`; it suggests a rate that fits."""
     fitting_hz = math.floor(100.0 * rate_hz * (most - 1) / count) / 100.0
     return InputError(
         f"{count} frames are too many: {name} holds {most}, {duration_text(most / rate_hz)} at {rate_hz:g} Hz",
@@ -138,7 +138,7 @@ def too_long(
 
 
 def duration_text(duration_s: float) -> str:
-    """Hours, minutes and seconds, whole ones."""
+    """Whole hours, minutes and seconds."""
     minutes, seconds = divmod(int(duration_s), 60)
     hours, minutes = divmod(minutes, 60)
     parts = [f"{hours} h"] * (hours > 0) + [f"{minutes} min"] * (hours + minutes > 0)
@@ -146,7 +146,7 @@ def duration_text(duration_s: float) -> str:
 
 
 def usual_rate_hz(times_ns: Ints, rates_hz: Sequence[float] = RATES_HZ) -> float:
-    """The rate of samples by the median of their distances, rounded to a hundredth [Hz]; 30 for too few."""
+    """The rate of samples by their median distance, rounded to a hundredth [Hz]; 30 for too few samples."""
     if len(times_ns) < 2:
         return 30.0
     step_s = float(np.median(np.diff(times_ns))) * NS

@@ -1,4 +1,4 @@
-"""A motion with +Z up, for programs that take a file's axes for their own: a person at rest then faces -Y."""
+"""A motion with +Z up, for programs that do not convert a file's axes; a person at rest then faces -Y."""
 
 from dataclasses import replace
 

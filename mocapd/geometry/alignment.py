@@ -1,4 +1,4 @@
-"""The rotation or rigid transform that lays one set of points or directions upon another (Kabsch, Umeyama)."""
+"""Least-squares rotation or rigid transform between two sets of points or directions (Kabsch, Umeyama)."""
 
 import numpy as np
 

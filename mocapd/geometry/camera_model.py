@@ -14,7 +14,7 @@ def camera_from_world(camera: Camera) -> RigidTransform:
 
 
 def with_extrinsics(camera: Camera, camera_from_world: RigidTransform) -> Camera:
-    """The same camera elsewhere."""
+    """The same camera with other extrinsics."""
     return replace(camera, R=camera_from_world.R, t_m=camera_from_world.t_m)
 
 

@@ -1,4 +1,4 @@
-"""A guess at where one uncalibrated camera stands, so that it can be tried at once."""
+"""A nominal pose for one uncalibrated camera, so that a user can try it at once."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Where points before many cameras fall in their pictures, and how that changes with points and intrinsics.
+"""Projection of points into many cameras, and its derivatives by points and intrinsics.
 
 One row per observation, each with the intrinsics of its own camera: the camera model of
 `camera_model`, row by row and with its Jacobians.
@@ -15,7 +15,7 @@ from mocapd.geometry.camera_model import (
 from mocapd.types import Floats
 
 INTRINSICS = 9  # fx fy cx cy k1 k2 p1 p2 k3
-_NEAREST_M = 1e-3  # what is nearer, or behind, is taken to be there
+_NEAREST_M = 1e-3  # lower bound of the depth, also for points behind
 
 
 def intrinsics_row(K: Floats, dist: Floats) -> Floats:

@@ -12,7 +12,7 @@ from mocapd.errors import ConfigError, MalformedError, NewerFileError
 from mocapd.geometry.rig_plausibility import require_plausible
 from mocapd.types import Camera, Floats, Rig
 
-SCHEMA = "mocapd.Rig.v1"  # what says none, as the capture format, is of this one too
+SCHEMA = "mocapd.Rig.v1"  # also of files without a schema, as in the capture format
 _RECALIBRATE = "calibrate again, or restore the file"
 _MOST_BYTES = 1_000_000  # a camera takes 1 kB
 _LARGEST_PX = 16_384  # of a picture's side
@@ -36,7 +36,7 @@ def _array(entry: dict[str, Any], key: str, shape: tuple[int, ...], where: str) 
 
 
 def _distortion(entry: dict[str, Any], where: str) -> Floats:
-    """k1 k2 p1 p2 k3 (5,); where four are given, as OpenCV takes them too, k3 is 0."""
+    """k1 k2 p1 p2 k3 (5,); of four values, which OpenCV accepts too, k3 is 0."""
     given = entry.get("dist")
     if isinstance(given, list) and len(given) == 4:
         return np.append(_array(entry, "dist", (4,), where), 0.0)
@@ -66,7 +66,7 @@ def camera_from_dict(entry: Any, where: str) -> Camera:
         raise ConfigError(
             "'R' mirrors (its determinant is -1): the rig is of a left-handed world",
             where,
-            "turn the sign of one column of R in all cameras, so that x is to the left of who faces +z, and y up",
+            "flip the sign of one column of R in all cameras, so that x is to the left of a person facing +z, and y up",
         )
     return Camera(
         name=name,

@@ -1,4 +1,4 @@
-"""Whether cameras stand as they can in a room: the unit of a rig shows in its distances."""
+"""Checks that a rig's distances are plausible for a room, which reveals a wrong unit."""
 
 from itertools import combinations
 
@@ -15,7 +15,7 @@ _UNITS = {"millimetres": 1e-3, "centimetres": 1e-2, "inches": 0.0254, "feet": 0.
 
 
 def require_plausible(rig: Rig, where: str) -> None:
-    """Raises ConfigError, naming distances and the likely unit, for cameras that stand as in no room."""
+    """Raises ConfigError, naming distances and the likely unit, for cameras that fit no room."""
     centres = {camera.name: centre(camera) for camera in rig.cameras}
     farthest = max(centres, key=lambda name: float(np.linalg.norm(centres[name])))
     away_m = float(np.linalg.norm(centres[farthest]))
@@ -40,7 +40,7 @@ def _length(length_m: float) -> str:
 
 
 def _mend(away_m: float) -> str:
-    """With the unit in which the cameras would stand in a room."""
+    """The error with the unit that would be plausible."""
     low, high = _USUAL_M
     middle = float(np.sqrt(low * high))
     fitting = [name for name, unit_m in _UNITS.items() if low <= away_m * unit_m <= high]

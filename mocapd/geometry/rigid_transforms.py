@@ -14,7 +14,7 @@ _Index = int | slice | EllipsisType | None | NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RigidTransform:
-    """One called a_from_b takes a point of b to a: x_a = R x_b + t_m; R (...,3,3), t_m (...,3) [m]."""
+    """a_from_b takes a point of b to a: x_a = R x_b + t_m; R (...,3,3), t_m (...,3) [m]."""
 
     R: Floats
     t_m: Floats
@@ -24,7 +24,7 @@ class RigidTransform:
         return RigidTransform(self.R @ other.R, self.apply(other.t_m))
 
     def __getitem__(self, index: _Index | tuple[_Index, ...]) -> "RigidTransform":
-        """Those of a batch, by an index into its leading axes."""
+        """Transforms of a batch, by an index into its leading axes."""
         return RigidTransform(self.R[index], self.t_m[index])
 
     def apply(self, points_m: Floats) -> Floats:
@@ -46,13 +46,13 @@ IDENTITY = RigidTransform(np.eye(3), np.zeros(3))
 
 
 def stack(transforms: Sequence[RigidTransform]) -> RigidTransform:
-    """A batch (N,) of single ones."""
+    """A batch (N,) of single transforms."""
     return RigidTransform(
-        np.array([one.R for one in transforms]).reshape(-1, 3, 3),
-        np.array([one.t_m for one in transforms]).reshape(-1, 3),
+        np.array([transform.R for transform in transforms]).reshape(-1, 3, 3),
+        np.array([transform.t_m for transform in transforms]).reshape(-1, 3),
     )
 
 
 def concatenate(a: RigidTransform, b: RigidTransform) -> RigidTransform:
-    """The batch of those of a, then those of b."""
+    """The transforms of a, then those of b."""
     return RigidTransform(np.concatenate([a.R, b.R]), np.concatenate([a.t_m, b.t_m]))

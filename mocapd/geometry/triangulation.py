@@ -18,7 +18,7 @@ def triangulate(
     `xy` as `cameras.normalised` gives it. `weights` (N,...) are the inverse variances of xy, any
     scale; 0 or NaN coordinates: this camera does not see this point. The residual is the distance
     of the point from each ray, NaN where there is none. A point is NaN with fewer than two rays, or
-    with parallel ones; it may lie behind a camera, which the caller can tell from its depth.
+    with parallel ones; it may lie behind a camera, so callers must check its depth.
 
     Linear DLT in inhomogeneous form, x r3.X - r1.X = t1 - x t3 (Hartley and Zisserman, Multiple
     View Geometry, section 12.2). Its algebraic error is the image error times the depth, so `rounds`
@@ -27,11 +27,11 @@ def triangulate(
     """
     R = np.stack([camera.R for camera in cameras])
     t = np.stack([camera.t_m for camera in cameras])
-    seen = np.asarray(np.isfinite(xy).all(axis=-1))
+    visible = np.asarray(np.isfinite(xy).all(axis=-1))
     if weights is not None:
-        seen = seen & np.isfinite(weights) & (weights > 0.0)
-    xy = np.where(seen[..., None], xy, 0.0)
-    w = np.where(seen, 1.0 if weights is None else weights, 0.0)
+        visible = visible & np.isfinite(weights) & (weights > 0.0)
+    xy = np.where(visible[..., None], xy, 0.0)
+    w = np.where(visible, 1.0 if weights is None else weights, 0.0)
     # one leading axis for cameras, one for all points
     shape = xy.shape[1:-1]
     xy, w = xy.reshape(len(cameras), -1, 2), w.reshape(len(cameras), -1)
@@ -43,8 +43,8 @@ def triangulate(
         # the sign does not matter; a depth near 0 must not take the whole weight
         scale = np.sqrt(w) / np.maximum(np.abs(depth_m.T), 1e-3)
         points_m = _solve(rows, right, scale)
-    seen = seen.reshape(len(cameras), -1)
-    residuals_m = np.where(seen, _distances(cameras, xy, points_m), np.nan)
+    visible = visible.reshape(len(cameras), -1)
+    residuals_m = np.where(visible, _distances(cameras, xy, points_m), np.nan)
     return points_m.reshape(*shape, 3), residuals_m.reshape(len(cameras), *shape)
 
 
@@ -57,8 +57,8 @@ def _solve(rows: Floats, right: Floats, scale: Floats) -> Floats:
     A = np.moveaxis(rows * scale[..., None, None], 1, 0).reshape(n_points, -1, 3)
     b = np.moveaxis(right * scale[..., None], 1, 0).reshape(n_points, -1)
     U, s, Vt = np.linalg.svd(A, full_matrices=False)
-    known = (np.count_nonzero(scale, axis=0) >= 2) & (s[:, 2] > _PARALLEL * s[:, 0])
-    s = np.where(known[:, None], s, np.nan)
+    solvable = (np.count_nonzero(scale, axis=0) >= 2) & (s[:, 2] > _PARALLEL * s[:, 0])
+    s = np.where(solvable[:, None], s, np.nan)
     along = np.einsum("pik,pi->pk", U, b) / s
     points_m: Floats = np.einsum("pkj,pk->pj", Vt, along)
     return points_m

@@ -1,1 +1,1 @@
-"""What is printed: the board and the shirt's pattern, at true size."""
+"""Printable PDFs: the board and the shirt's pattern, at true size."""

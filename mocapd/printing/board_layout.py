@@ -1,4 +1,4 @@
-"""Where things are on a printed board's pages, and how large the squares are that fit."""
+"""The page layout of a printed board, and the largest squares that fit."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import ConfigError
 from mocapd.printing.paper_sizes import RULER_HEIGHT_MM, Size, paper_size_mm
 
-MIN_SQUARE_MM = 10.0  # the cells of a smaller one's marker are lost to a webcam a metre away
+MIN_SQUARE_MM = 10.0  # a webcam a metre away cannot resolve the cells of a smaller marker
 _MARKER_SHARE = 0.75  # of a square's side
 _LEAST_SHARE, _WIDEST_SHARE = (
     0.4,
@@ -29,8 +29,8 @@ Rect = tuple[float, float, float, float]  # x, y, width, height
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """Where things are on the page [mm], origin at the lower left: the board, and the beginnings of
-    the ruler along its bottom and of the one up its left side; crosses: by letter, of a two-sided board."""
+    """Positions on the page [mm], origin at the lower left: the board, the starts of the horizontal ruler below it
+    and of the upright one at its left; crosses: by letter, of a two-sided board."""
 
     page_mm: Size
     board: Rect
@@ -50,8 +50,8 @@ def fitted_board(
     square_m: float | None = None,
     marker_m: float | None = None,
 ) -> BoardSpec:
-    """The board with the largest squares of whole millimetres that fit on the paper, or of the
-    side asked for. Raises ConfigError when they do not fit, or are too small to be seen."""
+    """The board with the largest squares of whole millimetres that fit on the paper, or with the given square.
+    Raises ConfigError when it does not fit, or its squares are too small for a webcam."""
     size = f"{columns}x{rows}"
     most_mm = max(_most_mm(page, columns, rows, two_sided) for page in _pages_mm(paper))
     side_mm = np.floor(most_mm) if square_m is None else square_m * 1000
@@ -91,7 +91,7 @@ def fitted_board(
 
 
 def layout_of(board: BoardSpec, paper: str) -> Layout:
-    """The page, upright unless lying it takes the board with more room; of two the front's."""
+    """The page, portrait unless landscape gives the board more room; of a two-sided board the front page."""
 
     def most_mm(page_mm: Size) -> float:
         return _most_mm(page_mm, board.columns, board.rows, board.two_sided)
@@ -109,8 +109,8 @@ def layout_of(board: BoardSpec, paper: str) -> Layout:
 
 
 def layout_behind(front: Layout) -> Layout:
-    """The page of the back: all that must lie behind the front's own is mirrored across the page, so that it
-    lies there too on a sheet that is printed on both sides."""
+    """The back page: mirrored across the page, so that everything lies behind its front counterpart on a sheet
+    printed on both sides."""
     width_mm = front.page_mm[0]
     x, y, width, height = front.board
     left = width_mm - x - width
@@ -130,13 +130,13 @@ def _crosses(board: Rect) -> dict[str, Size]:
 
 
 def _pages_mm(paper: str) -> tuple[Size, Size]:
-    """Upright and lying."""
+    """Portrait and landscape."""
     width, height = paper_size_mm(paper)
     return (width, height), (height, width)
 
 
 def _area(page_mm: Size, two_sided: bool) -> Rect:
-    """Where the board may be."""
+    """The part of the page that the board may use."""
     left = EDGE_MM + _RULER_STRIP_MM
     bottom = left + _COMMAND_STRIP_MM
     edge = EDGE_MM + (_CROSS_STRIP_MM if two_sided else 0.0)

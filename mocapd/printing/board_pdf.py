@@ -1,5 +1,5 @@
-"""The calibration board as a PDF: a ChArUco board at true size, its parameters and its rulers; of a
-two-sided one a second page with the mirror image, and crosses to glue them back to back by."""
+"""The calibration board as a PDF: a ChArUco board at true size with its parameters and rulers. A two-sided
+board has a second page with the mirror image, and crosses for gluing the pages back to back."""
 
 from collections.abc import Iterator
 
@@ -39,8 +39,8 @@ def flags_of(board: BoardSpec) -> str:
 
 
 def board_pdf(board: BoardSpec, paper: str) -> bytes:
-    """The PDF with a ChArUco board, not of the legacy layout: one page, or two for a two-sided one. The same
-    board and paper give the same bytes."""
+    """The PDF of a ChArUco board, not of the legacy layout: one page, or two for a two-sided one. The same board and
+    paper give the same bytes."""
     layout = layout_of(board, paper)
     kind = "ChArUco board, inverted" if board.inverted else "ChArUco board"
     document = Document(
@@ -56,7 +56,7 @@ def board_pdf(board: BoardSpec, paper: str) -> bytes:
     draw_ruler(canvas, layout.ruler_mm)
     draw_ruler(canvas, layout.upright_ruler_mm, upright=True)
     _draw_crosses(canvas, layout)
-    _write_beside(canvas, board, layout, f"{title}, {paper}")
+    _write_labels(canvas, board, layout, f"{title}, {paper}")
     if board.two_sided:
         behind = layout_behind(layout)
         title = f"BACK: {kind}, mirrored"
@@ -69,9 +69,9 @@ def board_pdf(board: BoardSpec, paper: str) -> bytes:
 
 
 def dark_rects(board: BoardSpec) -> Iterator[Rect]:
-    """Rectangles (x, y, width, height) [mm] from the board's top left corner, y down: dark where one
-    covers (the squares, and the markers' cells beside them), light where two do (inverted: the
-    cells in their squares)."""
+    """Rectangles (x, y, width, height) [mm] from the board's top left corner, y down. One rectangle is dark (the
+    squares, and the cells of markers in white squares); two on top of each other are light (inverted boards: the cells
+    of markers in black squares)."""
     side = board.square_m * 1000
     for row in range(board.rows):
         for column in range((row + board.inverted) % 2, board.columns, 2):
@@ -120,7 +120,7 @@ def _draw_crosses(canvas: Canvas, layout: Layout) -> None:
         write_text(canvas, (x + 0.8, y + 0.8), letter, 3.0, font=BOLD)
 
 
-def _write_beside(canvas: Canvas, board: BoardSpec, layout: Layout, title: str) -> None:
+def _write_labels(canvas: Canvas, board: BoardSpec, layout: Layout, title: str) -> None:
     x, y = layout.ruler_mm
     glue = "Glue it flat onto something stiff"
     glue += "; how BACK goes on is said there." if board.two_sided else "."
@@ -148,16 +148,16 @@ def _write_on_back(canvas: Canvas, board: BoardSpec, layout: Layout, title: str)
 
 
 def _write_title(canvas: Canvas, board: BoardSpec, layout: Layout, title: str, remark: str) -> None:
-    """Beside the ruler."""
+    """To the right of the ruler."""
     x, y = layout.ruler_mm
-    beside = x + RULER_MM + 8.0
-    write_text(canvas, (beside, y + 5.0), title, 3.4, font=BOLD)
+    left = x + RULER_MM + 8.0
+    write_text(canvas, (left, y + 5.0), title, 3.4, font=BOLD)
     squares = f"{board.columns} x {board.rows} squares of {board.square_m * 1000:g} mm"
     markers = f"markers of {board.marker_m * 1000:g} mm, {board.dictionary}"
     lines = [f"{squares}, {markers}", remark]
-    room_mm = layout.page_mm[0] - EDGE_MM - beside
+    room_mm = layout.page_mm[0] - EDGE_MM - left
     em_mm = min(_fitting_mm(line, "Helvetica", 2.4, room_mm) for line in lines)
-    write_text(canvas, (beside, y + 1.4), lines, em_mm)
+    write_text(canvas, (left, y + 1.4), lines, em_mm)
 
 
 def _fitting_mm(line: str, font: str, em_mm: float, room_mm: float) -> float:

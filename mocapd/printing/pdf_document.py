@@ -23,7 +23,7 @@ _CAP_HEIGHT = 0.72  # of Helvetica, in ems
 
 @dataclass(frozen=True, slots=True)
 class About:
-    """What a PDF says of itself; `keywords` carries the parameters for programs to read."""
+    """A PDF's metadata; `keywords` carries the parameters for programs to read."""
 
     title: str
     subject: str
@@ -33,7 +33,7 @@ class About:
 class Document:
     """A PDF whose unit is the millimetre, origin at the lower left, y up.
 
-    The same calls give the same bytes: dates and ids in it are fixed. Viewers are asked to print it
+    The same calls give the same bytes: dates and ids in it are fixed. The file asks viewers to print it
     without scaling.
     """
 
@@ -49,7 +49,7 @@ class Document:
         self._pages = 0
 
     def page(self, size_mm: Size, bookmark: str) -> Canvas:
-        """Begin a page, found as `bookmark` in the outline; returns the canvas to draw on."""
+        """Begin a page, with `bookmark` as its entry in the outline; returns the canvas to draw on."""
         if self._pages:
             self._canvas.showPage()
         self._pages += 1
@@ -90,9 +90,8 @@ def write_text(
 
 
 def draw_ruler(canvas: Canvas, at_mm: Size, *, upright: bool = False) -> None:
-    """A ruler of RULER_MM from `at_mm`, to the right with its ticks upwards, or (`upright`) upwards
-    with its ticks to the left; RULER_HEIGHT_MM high. Its length is from the centre of the first tick
-    to that of the last.
+    """A ruler of RULER_MM from `at_mm` to the right with its ticks upwards, or (`upright`) upwards with its ticks to
+    the left; RULER_HEIGHT_MM high. Its length is from the centre of the first tick to that of the last.
     """
     canvas.saveState()
     canvas.translate(*at_mm)
@@ -115,6 +114,6 @@ def draw_ruler(canvas: Canvas, at_mm: Size, *, upright: bool = False) -> None:
 
 
 def write_pdf(path: Path, content: bytes, force: bool = False) -> None:
-    """Write the file whole or not at all; force: in place of a file of any kind. Raises CannotCreateError."""
+    """Write the file atomically; force: replace a file of any kind. Raises CannotCreateError."""
     with OutputFile(path, PDF, force).writing() as partial:
         partial.write_bytes(content)

@@ -1,12 +1,12 @@
 """The standard shirt as flat cloth: front, back and two sleeves with their patches, in five sizes.
 
-Draft: the shirt lying flat with its sleeves straight out, as its wearer stands in the T-pose, cut
-along the armholes. A sleeve is what lies beyond the armhole, unfolded at the line along the top of
-the arm; so the two edges of every seam are of one length by construction.
+Draft: the shirt lies flat with its sleeves straight out, in the wearer's T-pose, cut along the
+armholes. A sleeve is the part beyond the armhole, unfolded at the line along the top of the arm; so
+the two edges of every seam are of one length by construction.
 
-Where the patches end follows `calib/shirt_standard_v1.json` on the mean body of the size's stature
-(`calib/body_proportions.json`, the tracker's own): the torso from the hips to the neck joint, the
-sleeves by fractions of the upper arm and the forearm. Measured along the cloth as along the bones.
+The ends of the patches follow `calib/shirt_standard_v1.json` on the mean body of the size's stature
+(`calib/body_proportions.json`, which the tracker uses, too): the torso from the hips to the neck joint, the
+sleeves by fractions of the upper arm and the forearm. Lengths along the cloth equal lengths along the bones.
 """
 
 from dataclasses import dataclass
@@ -43,8 +43,8 @@ class ShirtMeasures:
 
 
 # Round figures. Chest girths are about the middle of the ranges that EN 13402-3 gives these letters
-# (men: S 86-94, M 94-102, L 102-110, XL 110-118, XXL 118-129 cm); statures are of adults who commonly
-# wear them. Widths and sleeve girths are graded evenly, as ready-made knitted shirts are; no standard
+# (men: S 86-94, M 94-102, L 102-110, XL 110-118, XXL 118-129 cm); statures are typical of adults of
+# these sizes. Widths and sleeve girths are graded evenly, as in ready-made knitted shirts; no standard
 # gives them.
 SIZES = {
     "S": ShirtMeasures(1680, 900, 350, 410, 210, 150),
@@ -168,7 +168,7 @@ def _torso(draft: _Draft, name: str, neck_depth: float, *, front: bool) -> Piece
     hem = (outline[:, 1] == 0.0) & (np.roll(outline[:, 1], -1) == 0.0)
     cut = offset(outline, np.where(hem, HEM_MM, SEAM_MM))
     upper, lower = _beyond(1, +1, draft.neck_y / 2), _beyond(1, -1, draft.neck_y / 2)
-    # seen from outside, the wearer's left is at the right of the front and at the left of the back
+    # viewed from outside, the wearer's left is at the right of the front and at the left of the back
     side, left_sign = ("front", 1) if front else ("back", -1)
     patches = tuple(
         _patch(f"torso_{side}_{level}_{hand}", outline, cut, upright, _beyond(0, sign))
@@ -222,14 +222,14 @@ def _sleeve(draft: _Draft, hand: str) -> Piece:
 def clip(polygon: Floats, normal: Floats, least: float) -> Floats:
     """The part of the polygon (N,2) where `normal . p >= least` (Sutherland and Hodgman 1974)."""
     height = polygon @ normal - least
-    kept: list[Floats] = []
+    inside: list[Floats] = []
     for i in range(len(polygon)):
         a, b, ha, hb = polygon[i - 1], polygon[i], height[i - 1], height[i]
         if (ha > 0) != (hb > 0) and ha != 0 and hb != 0:
-            kept.append(a + (b - a) * ha / (ha - hb))
+            inside.append(a + (b - a) * ha / (ha - hb))
         if hb >= 0:
-            kept.append(b)
-    return np.array(kept)
+            inside.append(b)
+    return np.array(inside)
 
 
 def offset(polygon: Floats, distance: Floats) -> Floats:

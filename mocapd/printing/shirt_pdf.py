@@ -28,7 +28,7 @@ from mocapd.shirt.standard_shirt import N_COLOURS, Shirt, standard_shirt
 
 LAYOUTS = ("sewing", "printing")
 _EDGE_MM = 14.0
-_SEWING_TINT = 0.25  # of the colour: tells the patches apart and spares ink
+_SEWING_TINT = 0.25  # of the colour: enough to distinguish the patches, and spares ink
 _SHEET_EDGE_MM = 10.0
 
 Tiled = tuple[tuple[Piece, Tiling], ...]
@@ -190,7 +190,7 @@ def _draw_small(
 
 
 def _draw_grid(canvas: Canvas, tiling: Tiling, scale: float) -> None:
-    """The pages' frames, the names of the rows and columns beside them."""
+    """The pages' frames, with row and column names at their edges."""
     w, h = tiling.frame_mm
     canvas.setStrokeColorRGB(*DARK)
     canvas.setLineWidth(0.1 / scale)

@@ -1,4 +1,4 @@
-"""A large piece over several pages: which part is on which page, and the marks to join them by."""
+"""A large piece over several pages: the part on each page, and marks for joining them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from mocapd.printing.pdf_document import BOLD, DARK, PALE, write_text
 from mocapd.types import Floats
 
 EDGE_MM = 12.0  # from the paper's edge to the frame; printers leave 5 mm of it white
-FOOT_MM = 8.0  # more at the lower edge, for the line that says which page it is
+FOOT_MM = 8.0  # more at the lower edge, for the page's name
 _BLEED_MM = 4.0  # drawn beyond the frame, so that joining them need not be exact
 _MARK_MM = 5.0
 _SPARE_MM = 4.0  # round the piece, so that no line runs along a frame
@@ -35,7 +35,7 @@ class Tile:
 
 @dataclass(frozen=True, slots=True)
 class Tiling:
-    """Rows and columns of frames of one size on pages of one size, with which the piece is covered."""
+    """Rows and columns of frames of one size on pages of one size, that cover the piece."""
 
     page_mm: Size
     rows: int
@@ -57,7 +57,7 @@ class Tiling:
 
 
 def tiling_of(polygon: Floats, paper: str) -> Tiling:
-    """The way, pages upright or lying, that takes the fewest; the polygon (N,2) in the middle."""
+    """The layout, portrait or landscape, with the fewest pages; the polygon (N,2) is in the middle."""
     low, high = polygon.min(axis=0), polygon.max(axis=0)
     size = high - low + 2 * _SPARE_MM
     centre = 0.5 * (low + high)

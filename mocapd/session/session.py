@@ -85,7 +85,7 @@ def plan_session(config: Config) -> SessionPlan:
     origin = common_origin(camera.source for camera in cameras)
     known, rig_source, calibrated = Calibration(), "", None
     if saved is not None:
-        known, rig_source, calibrated = saved.known, str(saved.path), saved.tables.made.when
+        known, rig_source, calibrated = saved.calibration, str(saved.path), saved.tables.made.when
     elif config.rig is not None:
         known, rig_source = Calibration(load_rig(config.rig)), str(config.rig)
     cameras = in_rig_order(cameras, known.rig)

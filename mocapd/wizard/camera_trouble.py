@@ -1,4 +1,4 @@
-"""Cameras that stopped while a step goes on, and too few of them."""
+"""Problems of stopped cameras, and of too few cameras."""
 
 from collections.abc import Iterable
 
@@ -23,7 +23,7 @@ def stopped_cameras(context: Context, ids: Iterable[str]) -> tuple[Problem, ...]
 
 
 def too_few_cameras(draft: Draft, cameras: int) -> Problem | None:
-    """What is said where so many cameras are too few without the shirt; None where they suffice."""
+    """The problem of too few cameras for tracking without the shirt; None where they suffice."""
     if draft.has_shirt or cameras >= FEWEST_WITHOUT_SHIRT:
         return None
     return Problem(

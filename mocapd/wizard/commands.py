@@ -1,9 +1,8 @@
-"""What a person can say on the page: the form of it, and what is of the setup as a whole.
+"""Commands of the page: their format, and those of the setup as a whole.
 
-The one way in: `read_command` makes a command of what came, or refuses it, so that what reaches a step
-is already right. What only the step knows (which cameras there are, what is being done) it checks
-itself. An argument with a default may be left out, or be null where None is the default; others that
-a verb does not have are ignored.
+The only entry: `read_command` converts and checks the input, so that a step gets valid commands only. The step itself
+checks what depends on its state (existing cameras, running jobs). An argument with a default may be left out, or be null
+where None is the default; unknown arguments are ignored.
 """
 
 from collections.abc import Mapping
@@ -17,7 +16,7 @@ from mocapd.errors import InputError, MalformedError
 
 
 class Command(msgspec.Struct, frozen=True, kw_only=True):
-    """refused, fix: what a person is told when the arguments are not right."""
+    """refused, fix: the user's message for wrong arguments."""
 
     refused: ClassVar[str] = "the page said what is not understood"
     fix: ClassVar[str] = "reload the page"
@@ -27,7 +26,7 @@ Verbs = Mapping[str, type[Command]]
 
 
 def read_command(verbs: Verbs, verb: str, args: Mapping[str, object], where: str) -> Command:
-    """What was said. Raises InputError for another verb, and for arguments that it does not take."""
+    """The command. Raises InputError for an unknown verb, and for wrong arguments."""
     kind = verbs.get(verb)
     if kind is None:
         raise InputError(f"no command {brief(verb)} in this step", where, "reload the page")
@@ -58,7 +57,7 @@ class Go(Command, frozen=True):
 
 
 class Next(Command, frozen=True):
-    """Show the step after this one, which is done."""
+    """Show the step after this finished one."""
 
 
 class Again(Command, frozen=True):
@@ -66,15 +65,15 @@ class Again(Command, frozen=True):
 
 
 class Resume(Command, frozen=True):
-    """Go on with the setup that was kept when a process ended."""
+    """Go on with the unfinished setup of an earlier process."""
 
 
 class BeginAnew(Command, frozen=True):
-    """Forget the setup that was kept."""
+    """Discard the unfinished setup."""
 
 
 class Wear(Command, frozen=True):
-    """Whether there is a shirt; without one, its steps are left out."""
+    """Whether there is a shirt; without one, its steps are omitted."""
 
     refused = "whether there is a shirt was not said"
     shirt: bool

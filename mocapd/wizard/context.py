@@ -1,4 +1,4 @@
-"""What a step of the wizard is, and what it is given to work with."""
+"""The interface of a step of the wizard, and of its context."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -14,54 +14,54 @@ from mocapd.wizard.step_names import StepName
 
 
 class Context(Protocol):
-    """What steps work with. Everything is called from the wizard's thread."""
+    """The interface of the wizard for its steps. Calls come from the wizard's thread."""
 
     hub: FrameHub
-    draft: Draft  # a step replaces it by a new one when it has found something
+    draft: Draft  # a step replaces it by a new one after a result
     state_dir: Path
     cache_dir: Path
 
     def statuses(self) -> Mapping[str, CaptureStatus]:
-        """How each camera fares, by id."""
+        """The status of each camera, by id."""
         ...
 
     def scene(self, scene: Scene) -> None:
-        """Tell a simulated person what to do; nothing happens with real cameras."""
+        """Instruct a simulated person; no effect on real cameras."""
         ...
 
     def start_job(self, job: Callable[[Tell], T], done: Callable[[T], None]) -> None:
-        """Run something long in the worker thread; `done` gets its result in the wizard's thread.
+        """Run a long job in the worker thread; `done` gets its result in the wizard's thread.
 
-        A MocapdError that the job raises goes to the step's `job_failed`. One job at a time: a second
-        is refused by an AssertionError. Leaving the step forgets the job: `done` is not called.
+        A MocapdError of the job goes to the step's `job_failed`. One job at a time: a second raises AssertionError.
+        After leaving the step the job's result is dropped: `done` is not called.
         """
         ...
 
-    def saved(self) -> None:
-        """The draft has been written to the state directory."""
+    def on_saved(self) -> None:
+        """Called after writing the draft to the state directory."""
         ...
 
     @property
     def job(self) -> tuple[str, float] | None:
-        """What the running job told last; None when none runs."""
+        """The latest progress report of the running job; None without one."""
         ...
 
 
 class Step(Protocol):
-    """One step. Made anew when it is entered or begun again; nothing of it is called by two threads.
+    """One step. A new instance for each visit; calls come from one thread at a time.
 
-    A command that does not fit raises a MocapdError, whose text is shown; the step goes on as it was.
+    A command that does not fit raises a MocapdError, whose text is shown; the step is unchanged.
     """
 
     name: StepName
 
     @property
     def verbs(self) -> Verbs:
-        """The commands it takes now."""
+        """The present commands."""
         ...
 
     def enter(self) -> None:
-        """It is shown now."""
+        """Called when the step is shown."""
         ...
 
     def tick(self, now_ns: int) -> None:
@@ -69,17 +69,17 @@ class Step(Protocol):
         ...
 
     def command(self, command: Command) -> None:
-        """Something the person did on the page: one of `verbs`."""
+        """A command of the user: one of `verbs`."""
         ...
 
     def job_failed(self, error: MocapdError) -> None:
-        """The job ended with this error."""
+        """Called when the job raised this error."""
         ...
 
     def view(self) -> StepView:
-        """What to show now; called after every tick and command, so it must be quick."""
+        """The view to show; called after every tick and command, so it must be quick."""
         ...
 
     def leave(self) -> None:
-        """Another step is shown next, or the wizard ends: undo what must not stay."""
+        """Called before another step, or the wizard's end: undo temporary changes."""
         ...

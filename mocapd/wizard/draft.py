@@ -1,4 +1,4 @@
-"""What the wizard has found out so far: the calibration in the making."""
+"""The calibration in progress: the results of the wizard's steps."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,11 +12,11 @@ from mocapd.types import Floats, LabelledPicture, Rig
 
 @dataclass(frozen=True, slots=True)
 class DraftCamera:
-    """A camera that takes part.
+    """A camera of the setup.
 
-    id: its name in the rig; source: what a configuration calls it (`usb:...`, `/dev/video0`, a file,
-    `sim:...`); controls: what it was locked to, to be set again whenever the daemon opens it; label:
-    what the person calls it, empty for its id.
+    id: its name in the rig; source: its address in a configuration (`usb:...`, `/dev/video0`, a file, `sim:...`);
+    controls: its locked controls, which the daemon sets at every opening; label: the user's name for it, empty for its
+    id.
     """
 
     id: str
@@ -29,7 +29,7 @@ class DraftCamera:
 
 @dataclass(frozen=True, slots=True)
 class ExtrinsicsQuality:
-    """How well the extrinsics fit: `method` is "board" or "wearer"; NaN where a method cannot tell.
+    """Fit of the extrinsics: `method` is "board" or "wearer"; NaN for figures that a method does not give.
 
     rms_px: over all cameras; camera_rms_px: by camera; play_area_cm: median error in the play area.
     """
@@ -42,8 +42,8 @@ class ExtrinsicsQuality:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DraftColours:
-    """One camera's frozen picture with the strokes that were accepted, and W (3,3), model_from_camera on
-    RGB 0..1, solved from them."""
+    """One camera's frozen picture with the accepted strokes, and W (3,3), model_from_camera on RGB 0..1, solved from
+    them."""
 
     picture: LabelledPicture
     W: Floats
@@ -51,14 +51,13 @@ class DraftColours:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Draft:
-    """Everything found so far; None or empty where a step has not been done yet.
+    """All results so far; None or empty for unfinished steps.
 
-    board_views: by camera id the pictures of the board that intrinsics and extrinsics are solved from, by the index
-    of their sighting: views of one index are of one instant. intrinsics, colours: by camera id; intrinsics_saved:
-    ids whose intrinsics were taken over from an earlier setup; floor_known: whether floor and up were
-    measured, not guessed; personal: whether the wearer's own colours (from the strokes) replace the
-    shirt's standard; factors: the wearer's proportions, the N_SHAPE factors of `body.shape`; has_shirt: whether there
-    is a shirt to be tracked by.
+    board_views: by camera id the pictures of the board for intrinsics and extrinsics, by the index of their sighting: views
+    of one index are simultaneous. intrinsics, colours: by camera id; intrinsics_saved: ids with intrinsics of an earlier
+    setup; floor_known: whether floor and up were measured, not guessed; personal: whether the wearer's own colours (from
+    the strokes) replace the shirt's standard; factors: the wearer's proportions, the N_SHAPE factors of `body.shape`;
+    has_shirt: whether the wearer has a shirt for the tracker.
     """
 
     cameras: tuple[DraftCamera, ...] = ()

@@ -1,6 +1,6 @@
-"""A setup in progress as a file, from which another process can go on: a partial `calibration.toml` of its own folder.
+"""A setup in progress as a file, for continuing in another process: a partial `calibration.toml` in a folder of its own.
 
-Only its user may read it, as pictures show the wearer; passwords of cameras are not in it.
+Only its user may read it, as pictures show the wearer; it has no passwords of cameras.
 """
 
 from dataclasses import dataclass
@@ -19,21 +19,21 @@ OF_EARLIER_VERSIONS = "setup-draft.msgpack"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class KeptSetup:
-    """when: it was written (UTC); done: steps whose result is in the draft. The cameras' sources are
-    without passwords."""
+class UnfinishedSetup:
+    """when: time of writing (UTC); done: steps with their result in the draft. The cameras' sources lack
+    passwords."""
 
     when: datetime
     done: frozenset[StepName]
     draft: Draft
 
 
-def write_draft(path: Path, kept: KeptSetup) -> None:
-    """Write it whole, for its user alone. Raises CannotCreateError."""
-    write_setup(path, *setup_of(kept.draft, kept.when, kept.done))
+def write_draft(path: Path, unfinished: UnfinishedSetup) -> None:
+    """Write it atomically, readable by its user alone. Raises CannotCreateError."""
+    write_setup(path, *setup_of(unfinished.draft, unfinished.when, unfinished.done))
 
 
-def read_draft(path: Path) -> KeptSetup:
+def read_draft(path: Path) -> UnfinishedSetup:
     """Raises MissingError without a file, InputError, MalformedError or ConfigError for a damaged one, NewerFileError."""
     saved = read_setup(path)
     if saved.setup is None:
@@ -42,4 +42,4 @@ def read_draft(path: Path) -> KeptSetup:
         done = frozenset(map(StepName, saved.setup.done))
     except ValueError as error:
         raise MalformedError(f"names a step that does not exist ({error})") from None
-    return KeptSetup(saved.made.when, done, draft_of(saved, path))
+    return UnfinishedSetup(saved.made.when, done, draft_of(saved, path))

@@ -1,4 +1,4 @@
-"""The bodies that a setup tracks, for who shows them."""
+"""The newest body of a setup's tracker, for display."""
 
 from dataclasses import dataclass, field
 
@@ -8,15 +8,15 @@ from mocapd.pipeline.loop import PipelineLoop
 
 @dataclass(slots=True, eq=False)
 class NewestBody:
-    """Set by the wizard's thread, read by any: a reference is replaced whole.
+    """Set by the wizard's thread, read by any: a reference is replaced as a whole.
 
-    `loop`: the pipeline that puts them in; None while nothing tracks.
+    `loop`: the pipeline that sets it; None without one.
     """
 
     bodies: BodyHub = field(default_factory=BodyHub)
     loop: PipelineLoop | None = None
 
     def forget(self) -> None:
-        """Nothing tracks any more."""
+        """Called when tracking ends."""
         self.loop = None
         self.bodies.forget()

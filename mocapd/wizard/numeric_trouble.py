@@ -1,4 +1,4 @@
-"""Where solvers end on what a person drew, showed or typed: named, so that it is told and not deadly."""
+"""Converts solver errors on the user's input to named errors, which the user sees instead of a crash."""
 
 import logging
 
@@ -12,11 +12,11 @@ from mocapd.errors import InputError, MocapdError
 _log = logging.getLogger(__name__)
 
 EXPECTED = (MocapdError, cv2.error, np.linalg.LinAlgError)
-"""What a step may end in by what it is given; anything else is a bug of ours."""
+"""Expected exceptions of a step on bad input; any other one is a bug."""
 
 
 def name_trouble(error: MocapdError | cv2.error | np.linalg.LinAlgError, where: str) -> MocapdError:
-    """The error as people are told it. What has no name yet is logged with the place it came from."""
+    """The error for the user. An exception without a name is logged with its origin."""
     if isinstance(error, MocapdError):
         return error
     _log.warning("in the step %s: %s", where, error, exc_info=error)

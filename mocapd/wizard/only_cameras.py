@@ -1,4 +1,4 @@
-"""Lets the frames of some cameras through to a collector: others may be open too."""
+"""Filters the frames of some cameras for a collector; others may be open, too."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from mocapd.types import Frame
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OnlyCameras:
-    """What joins a hub in the collector's place."""
+    """Subscribes to a hub in the collector's place."""
 
     collector: FrameCollector
     names: frozenset[str]

@@ -1,4 +1,4 @@
-"""The last few frames of every camera, from which those of one instant are picked."""
+"""Buffers the last few frames of every camera, for picking simultaneous ones."""
 
 import threading
 from collections import deque
@@ -10,7 +10,7 @@ _STOPPED_NS = 700_000_000  # behind the newest of all: the camera has stopped
 
 
 class RecentFrames:
-    """Takes frames in the capture threads; asked in the wizard's."""
+    """Takes frames in the capture threads; queried in the wizard's."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()  # guards the frames

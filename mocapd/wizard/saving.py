@@ -1,4 +1,4 @@
-"""The draft as the tables of a calibration, finished or in progress, and those tables as a draft to go on with."""
+"""Converts the draft to the tables of a calibration, finished or in progress, and back."""
 
 import getpass
 import math
@@ -44,13 +44,13 @@ from mocapd.wizard.step_names import StepName
 
 _RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
 
-NOT_WRITTEN_YET = "-"  # pictures get their names when they are written
+NOT_WRITTEN_YET = "-"  # pictures get their names at writing
 
 
 def save_draft(draft: Draft, state_dir: Path) -> Path:
-    """Write the draft as the calibration of `state_dir`; the file's path.
+    """Write the draft as the calibration of `state_dir`; returns the file's path.
 
-    Raises InputError naming the step that was left out, CannotCreateError when it cannot be written.
+    Raises InputError naming a missing step, CannotCreateError for a failed write.
     """
     saved, pictures = saved_of(draft)
     path = state_dir / FILE_NAME
@@ -70,8 +70,8 @@ def saved_of(draft: Draft) -> tuple[SavedCalibration, dict[str, LabelledPicture]
 def setup_of(
     draft: Draft, when: datetime, done: Collection[StepName]
 ) -> tuple[SavedCalibration, dict[str, LabelledPicture]]:
-    """The same of a setup in progress, as far as it has come: what it still needs of the board is with it."""
-    cameras = tuple(_with_measurements(draft, _camera(draft, one)) for one in draft.cameras)
+    """The same of a setup in progress, with the board data that it still needs."""
+    cameras = tuple(_with_measurements(draft, _camera(draft, camera)) for camera in draft.cameras)
     return _tables(draft, cameras, when, SavedSetup(done=tuple(sorted(done))))
 
 
@@ -83,11 +83,11 @@ def load_draft(place: Path) -> Draft:
 
 
 def draft_of(saved: SavedCalibration, path: Path) -> Draft:
-    """The tables of a file as a draft. Raises InputError, or ConfigError for what does not belong together."""
-    known = from_saved(saved, path)
-    shirt = known.shirt or ShirtColours()
+    """The tables of a file as a draft. Raises InputError, or ConfigError for inconsistent data."""
+    calibration = from_saved(saved, path)
+    shirt = calibration.shirt or ShirtColours()
     room = saved.room
-    cameras = known.rig.cameras if known.rig else (None,) * len(saved.camera)
+    cameras = calibration.rig.cameras if calibration.rig else (None,) * len(saved.camera)
     intrinsics = {
         one.id: _intrinsics(one, camera, path)
         for one, camera in zip(saved.camera, cameras, strict=True)
@@ -95,47 +95,56 @@ def draft_of(saved: SavedCalibration, path: Path) -> Draft:
     }
     return Draft(
         cameras=tuple(
-            DraftCamera(one.id, one.source, one.size_px, one.fps_hz, one.controls, one.label)
-            for one in saved.camera
+            DraftCamera(
+                camera.id,
+                camera.source,
+                camera.size_px,
+                camera.fps_hz,
+                camera.controls,
+                camera.label,
+            )
+            for camera in saved.camera
         ),
         board=saved.board,
         board_views={
-            one.id: {view.index: _view(view, saved.board, path) for view in one.board_view}
-            for one in saved.camera
-            if one.board_view
+            camera.id: {view.index: _view(view, saved.board, path) for view in camera.board_view}
+            for camera in saved.camera
+            if camera.board_view
         },
         intrinsics=intrinsics,
         intrinsics_saved=frozenset(
-            one.id for one in saved.camera if one.lens is not None and one.lens.from_earlier
+            camera.id
+            for camera in saved.camera
+            if camera.lens is not None and camera.lens.from_earlier
         ),
-        rig=known.rig,
+        rig=calibration.rig,
         extrinsics_quality=None
         if room is None
         else ExtrinsicsQuality(
             room.method,
             nan_of(room.rms_px),
-            {one.id: nan_of(one.rms_px) for one in saved.camera},
+            {camera.id: nan_of(camera.rms_px) for camera in saved.camera},
             nan_of(room.play_area_cm),
         ),
         floor_known=room is not None and room.floor_known,
         colours={
-            one.id: DraftColours(shirt.white_balance[one.id], np.array(one.colour.W))
-            for one in saved.camera
-            if one.colour is not None
+            camera.id: DraftColours(shirt.white_balance[camera.id], np.array(camera.colour.W))
+            for camera in saved.camera
+            if camera.colour is not None
         },
         personal=saved.wearer is not None and saved.wearer.personal_colours,
-        stature_m=known.wearer.stature_m,
-        factors=known.wearer.shape_factors,
-        has_shirt=known.wearer.has_shirt,
+        stature_m=calibration.wearer.stature_m,
+        factors=calibration.wearer.shape_factors,
+        has_shirt=calibration.wearer.has_shirt,
     )
 
 
 def calibration_of(draft: Draft) -> Calibration:
-    """What the draft knows, as the saved calibration will. Raises InputError without a room."""
+    """The draft as a calibration record, equal to the saved one. Raises InputError without a room."""
     if draft.rig is None:
         raise InputError("the room is not calibrated", "room", "do that step first")
-    pictures = {name: one.picture for name, one in draft.colours.items()}
-    W = {name: one.W for name, one in draft.colours.items()}
+    pictures = {name: colours.picture for name, colours in draft.colours.items()}
+    W = {name: colours.W for name, colours in draft.colours.items()}
     return Calibration(
         draft.rig,
         Wearer(draft.stature_m, draft.factors, draft.has_shirt),
@@ -162,7 +171,7 @@ def _tables(
         board=draft.board,
         setup=setup,
         camera=cameras,
-    ), {name: one.picture for name, one in draft.colours.items()}
+    ), {name: colours.picture for name, colours in draft.colours.items()}
 
 
 def _camera(draft: Draft, camera: DraftCamera) -> SavedCamera:
@@ -192,7 +201,7 @@ def _camera(draft: Draft, camera: DraftCamera) -> SavedCamera:
 
 
 def _with_measurements(draft: Draft, camera: SavedCamera) -> SavedCamera:
-    """With what a later step needs of this camera: its lens as it was solved alone, and the board's corners."""
+    """Adds this camera's data for later steps: its separate intrinsics, and the board's corners."""
     lens, fit = draft.intrinsics.get(camera.id), camera.lens
     if lens is not None and fit is not None:
         fit = structs.replace(
@@ -276,17 +285,17 @@ def _view(saved: SavedBoardView, board: BoardSpec | None, path: Path) -> BoardVi
 
 
 def figure(value: float) -> float | None:
-    """Rounded for readers; None for NaN."""
+    """Rounded for readability; None for NaN."""
     return None if not math.isfinite(value) else round(value, 4)
 
 
 def nan_of(figure: float | None) -> float:
-    """NaN for a figure that is not known."""
+    """NaN for a missing figure."""
     return math.nan if figure is None else figure
 
 
 def login_name() -> str:
-    """Of who runs this."""
+    """The user's login name."""
     try:
         return getpass.getuser()
     except (KeyError, OSError):  # a service's user may have no name

@@ -1,4 +1,4 @@
-"""Keeps a setup in progress through the end of its process: written as it goes, offered at the next one."""
+"""Persists a setup in progress beyond its process: writes it after each result, and offers it at the next start."""
 
 import logging
 from collections.abc import Callable, Sequence
@@ -20,13 +20,13 @@ from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.draft_file import (
     FILE_NAME,
     OF_EARLIER_VERSIONS,
-    KeptSetup,
+    UnfinishedSetup,
     read_draft,
     write_draft,
 )
 from mocapd.wizard.step_names import StepName
 
-FORGOTTEN = timedelta(days=7)  # rooms and lights are others by then
+FORGOTTEN = timedelta(days=7)  # rooms and lights have changed by then
 
 _log = logging.getLogger(__name__)
 
@@ -34,8 +34,7 @@ _log = logging.getLogger(__name__)
 class SetupKeeper:
     """Made by the host for one setup of all steps; used by the wizard's thread.
 
-    What was kept stays in the file, and nothing is written, until the person has chosen: `resume` or
-    `begin_anew`.
+    Until the user chooses `resume` or `discard`, the file of an unfinished setup stays unchanged.
     """
 
     def __init__(
@@ -45,7 +44,7 @@ class SetupKeeper:
         locks: CameraLocks,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
-        """begun: what the setup begins with; its cameras are those that are open."""
+        """begun: the setup's initial draft; its cameras are the open ones."""
         self._path = state_dir / FILE_NAME
         self._opened, self._locks, self._now = begun.cameras, locks, now
         self._begun = begun
@@ -55,34 +54,34 @@ class SetupKeeper:
         self._writing: Future[None] | None = None
         self._trouble = ""
         self.offer = self._found()
-        """What was kept and is not answered yet."""
+        """The unfinished setup, before the user's choice."""
 
     # -- the choice ------------------------------------------------------------------------------
 
-    def resume(self) -> KeptSetup:
-        """The setup that was kept, with the cameras set as it found them. Raises InputError without one."""
-        kept, self.offer = self._offered(), None
-        opened = {one.id: one for one in self._opened}
-        there = tuple(replace(c, source=opened[c.id].source) for c in kept.draft.cameras)
-        draft = replace(kept.draft, cameras=there)
+    def resume(self) -> UnfinishedSetup:
+        """The unfinished setup, with its controls set in the cameras. Raises InputError without one."""
+        unfinished, self.offer = self._require_offer(), None
+        opened = {camera.id: camera for camera in self._opened}
+        there = tuple(replace(c, source=opened[c.id].source) for c in unfinished.draft.cameras)
+        draft = replace(unfinished.draft, cameras=there)
         draft = with_cameras(draft, tuple(self._as_open(c, opened[c.id]) for c in there))
         self._begun = Draft()  # all of it is news
-        self._wanted = self._written = draft, kept.done
-        return replace(kept, draft=draft)
+        self._wanted = self._written = draft, unfinished.done
+        return replace(unfinished, draft=draft)
 
-    def begin_anew(self) -> None:
-        """The person does not want what was kept. Raises InputError when nothing was."""
-        self._offered()
+    def discard(self) -> None:
+        """Remove the unfinished setup. Raises InputError without one."""
+        self._require_offer()
         self.offer = None
         self._remove()
 
-    def _offered(self) -> KeptSetup:
+    def _require_offer(self) -> UnfinishedSetup:
         if self.offer is None:
-            raise InputError("no setup of before is kept", "the page", "reload the page")
+            raise InputError("there is no unfinished setup", "the page", "reload the page")
         return self.offer
 
     def _as_open(self, camera: DraftCamera, opened: DraftCamera) -> DraftCamera:
-        """A webcam is set to what was found; what cannot be set stays as it is."""
+        """Set a webcam to the unfinished setup's controls, as far as it accepts them."""
         if not self._locks.can_lock(camera.id):
             return replace(camera, size_px=opened.size_px, fps_hz=opened.fps_hz)
         self._locks.take_up(
@@ -93,13 +92,13 @@ class SetupKeeper:
     # -- keeping ---------------------------------------------------------------------------------
 
     def keep(self, draft: Draft, done: frozenset[StepName]) -> None:
-        """What is known now: written, beside the caller, when a step has found something."""
+        """Write the present state in another thread, if a step has a new result."""
         if self.offer is None:
             self._wanted = draft, done
             self._write_on()
 
-    def saved(self, draft: Draft) -> None:
-        """All of it is in the calibration now."""
+    def on_saved(self, draft: Draft) -> None:
+        """Called after saving the draft as the calibration."""
         self._wait()
         self._begun = draft
         self._wanted = self._written = draft, self._wanted[1]
@@ -116,90 +115,92 @@ class SetupKeeper:
     def _write_on(self) -> None:
         if self._writing is not None:
             if not self._writing.done():
-                return  # what is newest by then is written next
+                return  # a later write takes the newest state
             self._wait()
         (draft, done), (before, done_before) = self._wanted, self._written
         if draft is before and done == done_before:
             return
         self._written = self._wanted
         if has_news(draft, self._begun):
-            self._writing = self._worker.submit(self._write, KeptSetup(self._now(), done, draft))
+            self._writing = self._worker.submit(
+                self._write, UnfinishedSetup(self._now(), done, draft)
+            )
 
     def _wait(self) -> None:
         writing, self._writing = self._writing, None
         if writing is not None:
-            writing.result()  # a bug of ours is heard of
+            writing.result()  # raises unexpected exceptions
 
-    def _write(self, kept: KeptSetup) -> None:
+    def _write(self, unfinished: UnfinishedSetup) -> None:
         try:
-            write_draft(self._path, kept)
+            write_draft(self._path, unfinished)
         except CannotCreateError as error:
             if str(error) != self._trouble:
                 self._trouble = str(error)
-                _log.warning("the setup in progress is not kept: %s", error)
+                _log.warning("the setup in progress cannot be stored: %s", error)
 
     def _remove(self) -> None:
-        with suppress(OSError):  # it is asked about again then
+        with suppress(OSError):  # then the next start offers it again
             remove_setup(self._path)
 
     # -- what there is ---------------------------------------------------------------------------
 
-    def _found(self) -> KeptSetup | None:
+    def _found(self) -> UnfinishedSetup | None:
         earlier = self._path.parents[1] / OF_EARLIER_VERSIONS
         if earlier.exists():
             _log.warning(
                 "%s: a setup in progress of an earlier mocapd: go on with that version, or remove the file",
                 earlier,
             )
-        kept: KeptSetup | None = None
+        unfinished: UnfinishedSetup | None = None
         try:
-            kept = read_draft(self._path)
-            why_not = self._why_not(kept)
+            unfinished = read_draft(self._path)
+            why_not = self._why_not(unfinished)
         except MissingError:
             return None
         except MocapdError as error:
-            self._put_aside(error)
+            self._quarantine(error)
             return None
         if why_not:
-            _log.info("%s: the setup that was kept there is removed: %s", self._path, why_not)
+            _log.info("%s: the unfinished setup is removed: %s", self._path, why_not)
             self._remove()
             return None
-        return kept
+        return unfinished
 
-    def _put_aside(self, error: MocapdError) -> None:
-        """It cannot be read: whoever made it may still want it."""
-        with suppress(OSError):  # it is met again then
+    def _quarantine(self, error: MocapdError) -> None:
+        """Move an unreadable file away, as another mocapd may still use it."""
+        with suppress(OSError):  # then the next start tries again
             why: Why = "newer" if isinstance(error, NewerFileError) else "corrupt"
-            aside = set_aside(self._path, why)
+            moved_to = set_aside(self._path, why)
             _log.warning(
-                "%s: the setup that was kept there cannot be used (%s), and is kept as %s",
-                *(self._path, error.what, aside.name),
+                "%s: the unfinished setup cannot be used (%s), and is now %s",
+                *(self._path, error.what, moved_to.name),
             )
 
-    def _why_not(self, kept: KeptSetup) -> str:
+    def _why_not(self, unfinished: UnfinishedSetup) -> str:
         """Why it is not offered; empty when it is."""
-        opened = {one.id: without_password(one.source) for one in self._opened}
-        if self._now() - kept.when > FORGOTTEN:
-            return f"it is of {kept.when:%Y-%m-%d}"
-        if any(opened.get(one.id) != one.source for one in kept.draft.cameras):
+        opened = {camera.id: without_password(camera.source) for camera in self._opened}
+        if self._now() - unfinished.when > FORGOTTEN:
+            return f"it is of {unfinished.when:%Y-%m-%d}"
+        if any(opened.get(camera.id) != camera.source for camera in unfinished.draft.cameras):
             return "it is of other cameras"
         return ""
 
 
-def kept_cameras(state_dir: Path, saved: Sequence[DraftCamera]) -> tuple[DraftCamera, ...]:
-    """The cameras of the setup that is kept, then those saved that are not among them: to open each under
-    the name and in the mode that it had."""
+def unfinished_cameras(state_dir: Path, saved: Sequence[DraftCamera]) -> tuple[DraftCamera, ...]:
+    """The cameras of the unfinished setup, then other saved ones: with the names and modes to open them
+    in."""
     try:
-        kept = read_draft(state_dir / FILE_NAME).draft.cameras
+        unfinished = read_draft(state_dir / FILE_NAME).draft.cameras
     except MocapdError:  # none, or one that is not offered
         return tuple(saved)
-    ids, sources = {one.id for one in kept}, {one.source for one in kept}
-    rest = (one for one in saved if one.id not in ids and one.source not in sources)
-    return (*kept, *rest)
+    ids, sources = {camera.id for camera in unfinished}, {camera.source for camera in unfinished}
+    rest = (camera for camera in saved if camera.id not in ids and camera.source not in sources)
+    return (*unfinished, *rest)
 
 
 def has_news(draft: Draft, begun: Draft) -> bool:
-    """Whether a step after Cameras has found something that was not there in the beginning."""
+    """Whether a step after Cameras has a new result."""
     return (
         draft.board not in (None, begun.board)
         or draft.stature_m not in (None, begun.stature_m)
@@ -207,6 +208,9 @@ def has_news(draft: Draft, begun: Draft) -> bool:
             one is not None and one is not before
             for one, before in ((draft.rig, begun.rig), (draft.factors, begun.factors))
         )
-        or any(one is not begun.intrinsics.get(name) for name, one in draft.intrinsics.items())
-        or any(one is not begun.colours.get(name) for name, one in draft.colours.items())
+        or any(
+            intrinsics is not begun.intrinsics.get(name)
+            for name, intrinsics in draft.intrinsics.items()
+        )
+        or any(colours is not begun.colours.get(name) for name, colours in draft.colours.items())
     )

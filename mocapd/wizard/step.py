@@ -1,4 +1,4 @@
-"""What a step of the wizard shows, and what a simulated person then does."""
+"""The view of a step of the wizard, and the matching scene of a simulated person."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -8,14 +8,16 @@ from typing import TypeVar
 from mocapd.errors import Problem
 
 T = TypeVar("T")
-Tell = Callable[[str, float], None]  # what is being done, share done 0..1; from the job's thread
+Tell = Callable[
+    [str, float], None
+]  # reports the current task and progress 0..1; called in the job's thread
 Json = object  # what `json.dumps` takes
 
 
 class Scene(StrEnum):
-    """What a simulated person is told to do, so that a step has something to see."""
+    """Instructions to a simulated person, so that a step has suitable pictures."""
 
-    EMPTY = "empty"  # nobody in the room
+    EMPTY = "empty"  # no person in the room
     LENS = "lens"  # the board is shown to every camera, at many places and slants
     ROOM = "room"  # the board is held where the cameras see it together
     FLOOR = "floor"  # the board lies on the floor
@@ -25,8 +27,8 @@ class Scene(StrEnum):
 
 
 class StepState(StrEnum):
-    """`waiting`: for the person; `working`: on something long; `done`: one may go on; `failed`:
-    nothing was found, `problems` say why, and the step can be continued or begun again."""
+    """`waiting`: for the user; `working`: on a long task; `done`: the user may go on; `failed`: no result, `problems` say
+    why, and the user can continue the step or begin it again."""
 
     WAITING = "waiting"
     WORKING = "working"

@@ -1,4 +1,4 @@
-"""The one job that a step has running: in a thread of its own, forgotten when its step is left."""
+"""The single job of a step, in a thread of its own; leaving the step drops its result."""
 
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -14,27 +14,27 @@ class StepJob:
         self._worker = _worker()
         self._future: Future[Any] | None = None
         self._done: Callable[[Any], None] | None = None
-        self._told: list[tuple[str, float]] = []  # by the job that runs; each job has its own
+        self._report: list[tuple[str, float]] = []  # of the running job; each job has its own
 
     @property
     def progress(self) -> tuple[str, float] | None:
-        """What the job says of itself and its share 0..1; None without one."""
-        return self._told[0] if self._future is not None else None
+        """The job's task and progress 0..1; None without one."""
+        return self._report[0] if self._future is not None else None
 
     def start(self, job: Callable[[Tell], T], done: Callable[[T], None]) -> None:
-        """Run it; `done` is called by `finish` with what it returns."""
+        """Run it; `finish` passes its result to `done`."""
         assert self._future is None, "one job at a time"
-        self._told = told = [("", 0.0)]
+        self._report = latest = [("", 0.0)]
 
-        # bound to this job: one that nobody listens to any more may still be telling
-        def tell(what: str, share: float) -> None:
-            told[0] = (what, share)
+        # local to this job: a dropped one may still report
+        def report(what: str, share: float) -> None:
+            latest[0] = (what, share)
 
         self._done = done
-        self._future = self._worker.submit(job, tell)
+        self._future = self._worker.submit(job, report)
 
     def finish(self) -> None:
-        """Hand over the result when there is one; whatever the job raised is raised here."""
+        """Pass on the result, if there is one; re-raises the job's exception."""
         future, done = self._future, self._done
         if future is None or done is None or not future.done():
             return
@@ -42,7 +42,7 @@ class StepJob:
         done(future.result())
 
     def forget(self) -> None:
-        """A job that runs on ends for itself: nobody hears of it."""
+        """Drop the job's result; a running job ends by itself."""
         if self._future is not None and not self._future.done():
             self.close()
             self._worker = _worker()

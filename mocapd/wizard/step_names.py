@@ -1,4 +1,4 @@
-"""The steps of the wizard by name, in their order, and when each is done."""
+"""Names of the wizard's steps, in order, and when each is done."""
 
 from collections.abc import Callable, Mapping, Sequence
 from enum import StrEnum
@@ -29,30 +29,30 @@ _IS_DONE: Mapping[StepName, Callable[[Draft, bool], bool]] = {
     StepName.BODY: lambda draft, _: draft.stature_m is not None,
     StepName.CHECK: lambda _, saved: saved,
 }
-"""Whether the result of a step is in the draft, given whether that was saved since the start."""
+"""Whether the result of a step is in the draft; the flag says whether the draft was saved since the start."""
 
 
 _OF_SHIRT = frozenset({StepName.COLOUR})
 
 
 def steps_wanted(names: Sequence[StepName], draft: Draft) -> tuple[StepName, ...]:
-    """Those of the steps that this setup needs: without a shirt none that are about it."""
+    """The steps that this setup needs: without a shirt none that concern it."""
     return tuple(name for name in names if draft.has_shirt or name not in _OF_SHIRT)
 
 
 def after_shirt(shown: StepName, names: Sequence[StepName], draft: Draft) -> StepName | None:
-    """The step to show when it was just said whether there is a shirt; None: the one that is shown goes on."""
+    """The step to show after a choice about the shirt; None: the present one stays."""
     if shown not in (StepName.COLOUR, StepName.BODY, StepName.CHECK):
         return None
     if StepName.COLOUR in names and not _IS_DONE[StepName.COLOUR](draft, False):
         return StepName.COLOUR
     if shown in names:
-        return shown  # anew: it has other things to ask
+        return shown  # again: its questions differ
     return next(
         name for name in (*names, StepName.CHECK) if name in (StepName.BODY, StepName.CHECK)
     )
 
 
 def steps_done(draft: Draft, saved: bool) -> frozenset[StepName]:
-    """The steps whose result is in the draft; saved: it was, since the start."""
+    """The steps with their result in the draft; saved: whether it was saved since the start."""
     return frozenset(name for name, is_done in _IS_DONE.items() if is_done(draft, saved))

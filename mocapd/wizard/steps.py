@@ -1,6 +1,6 @@
 """The steps of the setup, each by its name.
 
-A step is imported when it is made: together they take a second to import, and a page may never need them.
+A step's module is imported on first use: together they take a second to import, and a page may never need them.
 """
 
 from collections.abc import Callable, Mapping
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, slots=True)
 class SetupCameras:
     """What the host has opened, in the order of the hub; nodes: lists the machine's cameras; moved: those
-    found in another USB port than the saved calibration has them in, to be asked about."""
+    in another USB port than in the saved calibration, for a question to the user."""
 
     opened: tuple[DraftCamera, ...]
     nodes: Callable[[], tuple[CameraInfo, ...]]
@@ -36,8 +36,8 @@ class SetupCameras:
 def all_steps(
     cameras: SetupCameras, settings: CheckSettings, shown: NewestBody, died: OnDeath
 ) -> Mapping[StepName, MakeStep]:
-    """What a Wizard is made of. `shown` gets the body that Check tracks; `died` hears of its pipeline's
-    unexpected end."""
+    """All steps of a Wizard. `shown` gets the tracked body of Check; `died` gets an unexpected exception of
+    its pipeline."""
 
     def choosing(context: "Context") -> "Step":
         from mocapd.wizard.cameras.cameras_step import CamerasStep
@@ -84,5 +84,5 @@ def _body(context: "Context") -> "Step":
 
 
 def only(steps: Mapping[StepName, MakeStep], step: StepName) -> Mapping[StepName, MakeStep]:
-    """The steps to do when one is to be done again: that one, and the check that saves it."""
+    """The steps for repeating one: that one, and the check that saves it."""
     return {name: make for name, make in steps.items() if name in (step, StepName.CHECK)}

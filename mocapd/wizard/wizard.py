@@ -1,4 +1,4 @@
-"""The wizard: which step is shown, the thread it works in, and what the page may see of it."""
+"""The wizard: the present step, its thread, and its view for the page."""
 
 import logging
 import queue
@@ -15,7 +15,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.commands import OF_WIZARD, Again, BeginAnew, Go, Next, Resume, Wear, read_command
 from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.draft_file import KeptSetup
+from mocapd.wizard.draft_file import UnfinishedSetup
 from mocapd.wizard.numeric_trouble import EXPECTED, name_trouble
 from mocapd.wizard.setup_keeper import SetupKeeper
 from mocapd.wizard.step import Json, Scene, StepState, T, Tell
@@ -24,7 +24,7 @@ from mocapd.wizard.step_names import StepName, after_shirt, steps_done, steps_wa
 from mocapd.wizard.wizard_view import WizardView, with_offer
 
 _TICK_S = 0.05
-_MOST_COMMANDS = 32  # that wait to be taken, of up to 8 MB each; a person never gets there
+_MOST_COMMANDS = 32  # in the queue, of up to 8 MB each; a person never gets there
 
 _log = logging.getLogger(__name__)
 
@@ -36,8 +36,8 @@ MakeStep = Callable[[Context], Step]
 class Wizard:
     """Runs one step at a time in a thread of its own, from `start` to `stop`.
 
-    `view`, `send` and `picture` may be called from any thread. `died` is called with whatever
-    unexpected ended the thread.
+    `view`, `send` and `picture` may be called from any thread. `died` gets an unexpected exception that ended the
+    thread.
     """
 
     def __init__(
@@ -61,15 +61,15 @@ class Wizard:
         self._keeper = keeper
         self._all = tuple(name for name in StepName if name in steps)
         self._commands: queue.Queue[tuple[str, Mapping[str, Json]]] = queue.Queue(_MOST_COMMANDS)
-        self._flooded = threading.Event()  # a command was not even queued
+        self._flooded = threading.Event()  # the queue refused a command
         self._stopping = threading.Event()
         self._job = StepJob()
-        self._reached: set[StepName] = set()  # those that were done since the start
-        if self.draft.rig is not None:  # an earlier setup, of which some steps are done again
+        self._reached: set[StepName] = set()  # steps done since the start
+        if self.draft.rig is not None:  # an earlier setup, of which the user repeats some steps
             self._reached |= set(StepName)
         self._saved = False  # since the start
         self._refused: Problem | None = None
-        self._stumbled = ""  # what the last tick ended in, if it did
+        self._stumbled = ""  # the last tick's error
         self._step: Step = steps[first](self)
         self._changed = threading.Condition()  # guards the view
         self._view = self._snapshot(0)
@@ -90,7 +90,7 @@ class Wizard:
         return not self._thread.is_alive()
 
     def send(self, verb: str, args: Mapping[str, Json] | None = None) -> None:
-        """A command of the page: one of `commands.OF_WIZARD`, or of the step's own."""
+        """Take a command of the page: one of `commands.OF_WIZARD`, or of the step's own."""
         try:
             self._commands.put_nowait((verb, args or {}))
         except queue.Full:
@@ -108,7 +108,7 @@ class Wizard:
             return self._view
 
     def picture(self, key: str) -> bytes | None:
-        """A picture that the newest view names; None for one that it does not have."""
+        """A picture that the newest view names; None for another one."""
         return self.view().view.pictures.get(key)
 
     # -- Context, for the steps ------------------------------------------------------------------
@@ -126,11 +126,11 @@ class Wizard:
         """See Context."""
         self._job.start(job, done)
 
-    def saved(self) -> None:
+    def on_saved(self) -> None:
         """See Context."""
         self._saved = True
         if self._keeper is not None:
-            self._keeper.saved(self.draft)
+            self._keeper.on_saved(self.draft)
         if self._on_saved is not None:
             self._on_saved()
 
@@ -150,7 +150,7 @@ class Wizard:
                 self._publish()
                 self._take_commands()
             self._step.leave()
-            self._publish()  # that it has ended
+            self._publish()  # the end
             if self._keeper is not None:
                 self._keeper.close()
         except BaseException as error:
@@ -164,19 +164,19 @@ class Wizard:
             self._step.job_failed(name_trouble(error, self._step.name))
 
     def _tick(self) -> None:
-        """Trouble is told where refusals are, and tried again with the next tick."""
+        """Shows an error like a refusal, and tries again with the next tick."""
         try:
             self._step.tick(monotonic_ns())
             self._stumbled = ""
         except EXPECTED as error:
-            told = name_trouble(error, self._step.name)
-            if str(told) != self._stumbled:  # not twenty times a second
-                self._stumbled = str(told)
-                _log.warning("%s", told)
-            self._refused = Problem.of(told)
+            trouble = name_trouble(error, self._step.name)
+            if str(trouble) != self._stumbled:  # not twenty times a second
+                self._stumbled = str(trouble)
+                _log.warning("%s", trouble)
+            self._refused = Problem.of(trouble)
 
     def _take_commands(self) -> None:
-        """Waits a tick for the first; takes all that are there."""
+        """Waits a tick for the first; takes all in the queue."""
         timeout_s: float | None = _TICK_S
         while True:
             try:
@@ -191,13 +191,13 @@ class Wizard:
             self._publish()
 
     def _refusal_of(self, verb: str, args: Mapping[str, Json]) -> Problem | None:
-        """Take a command; why it was refused, None when it was not."""
+        """Execute a command; returns why it was refused, or None."""
         try:
             self._take(verb, args)
         except EXPECTED as error:
             return Problem.of(name_trouble(error, self._step.name))
-        # Arguments were checked, so this is a bug of ours. It is not worth a setup that took a person
-        # a quarter of an hour: what the command did is doubtful, what was found before it is not.
+        # Arguments were checked, so this is a bug. It must not cost a setup of a quarter of an hour: the command's
+        # effect is doubtful, earlier results are not.
         except (ArithmeticError, LookupError, TypeError, ValueError) as error:
             _log.exception("a bug in mocapd: the command %r of the step %s", verb, self._step.name)
             return Problem(
@@ -213,7 +213,7 @@ class Wizard:
         command = read_command(verbs, verb, args, self._step.name)
         if self._offer is not None and isinstance(command, Go | Next | Wear):
             raise InputError(
-                "a setup of before is kept",
+                "there is an unfinished setup",
                 "this setup",
                 "say below whether to go on with it, or begin anew",
             )
@@ -238,12 +238,12 @@ class Wizard:
             case Resume():
                 self._resume()
             case BeginAnew():
-                self._kept_by().begin_anew()
+                self._require_keeper().discard()
             case _:
                 self._step.command(command)
 
     @property
-    def _offer(self) -> KeptSetup | None:
+    def _offer(self) -> UnfinishedSetup | None:
         return self._keeper.offer if self._keeper is not None else None
 
     @property
@@ -251,7 +251,7 @@ class Wizard:
         return steps_wanted(self._all, self.draft)
 
     def _wear(self, shirt: bool) -> None:
-        """What was found out with a shirt is kept, should it be there after all."""
+        """Results with a shirt stay, should it turn up."""
         if shirt == self.draft.has_shirt:
             return
         self.draft = replace(self.draft, has_shirt=shirt)
@@ -260,20 +260,20 @@ class Wizard:
             self._show(after)
 
     def _resume(self) -> None:
-        """Go on with the first step that is not done. Raises InputError when nothing is kept."""
-        kept = self._kept_by().resume()
-        self.draft = kept.draft
-        self._reached |= kept.done
+        """Go on with the first unfinished step. Raises InputError without an unfinished setup."""
+        unfinished = self._require_keeper().resume()
+        self.draft = unfinished.draft
+        self._reached |= unfinished.done
         left = [name for name in self._names if not self._is_done(name)]
         self._show(left[0] if left else self._names[-1])
 
-    def _kept_by(self) -> SetupKeeper:
+    def _require_keeper(self) -> SetupKeeper:
         if self._keeper is None:
-            raise InputError("no setup is kept here", "this setup", "reload the page")
+            raise InputError("there is no unfinished setup", "this setup", "reload the page")
         return self._keeper
 
     def _show(self, name: StepName) -> None:
-        step = self._steps[name](self)  # refused when what it builds on is missing: this one stays
+        step = self._steps[name](self)  # raises where its inputs are missing: then this one stays
         self._step.leave()
         self._job.forget()
         self._step = step

@@ -26,7 +26,7 @@ from mocapd.sim.scenario import load_scenario
 from mocapd.sim.world import World
 from mocapd.types import Bytes
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.draft_file import FILE_NAME, KeptSetup, write_draft
+from mocapd.wizard.draft_file import FILE_NAME, UnfinishedSetup, write_draft
 from mocapd.wizard.step_names import StepName
 from tests.browser.conftest import FOR_THE_DOCS, Served, problems_of
 from tests.conftest import ROOT
@@ -123,7 +123,7 @@ def served(tmp_path_factory: pytest.TempPathFactory, user_env: dict[str, str]) -
         for one in load_scenario(SCENARIO).cameras
     )
     draft = Draft(cameras=cameras, stature_m=1.81)
-    unfinished = KeptSetup(datetime.now(UTC), frozenset({StepName.BODY}), draft)
+    unfinished = UnfinishedSetup(datetime.now(UTC), frozenset({StepName.BODY}), draft)
     write_draft(state_dir / FILE_NAME, unfinished)
     served = Served(state_dir, user_env)
     yield served

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.board.recordings import Recording, RecordingTimes
+from mocapd.calibrate.board.board_recordings import Recording, RecordingTimes
 from mocapd.calibrate.extrinsics.board_sighting import BoardSighting
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.geometry import rotations

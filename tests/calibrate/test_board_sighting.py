@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.board.board_detection import DetectionFailure, Reason
+from mocapd.calibrate.board.board_recordings import find_recordings
 from mocapd.calibrate.board.detection_diagnostics import most_telling
-from mocapd.calibrate.board.recordings import find_recordings
 from mocapd.calibrate.extrinsics.board_sighting import (
     BoardSighting,
     SpreadSample,

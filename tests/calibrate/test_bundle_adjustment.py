@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.board.board_motion import followed_from_one_side
+from mocapd.calibrate.board.board_motion import has_one_neighbour
 from mocapd.calibrate.extrinsics.board_reprojection import (
     Observations,
     ReprojectionProblem,
@@ -90,7 +90,7 @@ def test_slopes_are_those_of_small_steps() -> None:
     """Also of corners on the board's back, where that lies askew."""
     scene, seen = random_scene()
     seen = replace(seen, on_back=np.arange(len(seen.camera)) % 3 == 0)
-    scene = replace(scene, back=scene.back.stepped(np.array([0.004, -0.003, 0.02, 0.002])))
+    scene = replace(scene, back=scene.back.with_step(np.array([0.004, -0.003, 0.02, 0.002])))
     rng = np.random.default_rng(1)
     shapes = ((3, 9), (3, 6), (5, 6), (3,), (4,))
     at = [0.02 * rng.standard_normal(shape) for shape in shapes]
@@ -156,7 +156,7 @@ def test_a_view_that_is_off_as_a_whole_is_left_out_as_a_whole() -> None:
 
 
 def test_motion_followed_from_one_side_is_that_of_the_ends() -> None:
-    one_sided = followed_from_one_side([4, 0, 1, 2, 9, 3], 1.5)
+    one_sided = has_one_neighbour([4, 0, 1, 2, 9, 3], 1.5)
     np.testing.assert_array_equal(one_sided, [True, True, False, False, True, False])
 
 

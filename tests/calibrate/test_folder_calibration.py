@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board.recordings import find_recordings, numbered
+from mocapd.calibrate.board.board_recordings import find_recordings, pictures_by_index
 from mocapd.calibrate.extrinsics.folder_calibration import (
     FolderCalibration,
     FolderParams,
@@ -139,13 +139,13 @@ def test_plain_boards_that_look_the_same_upside_down_are_refused(pictures: Path)
 def test_pictures_belong_together_by_the_number_in_their_names(tmp_path: Path) -> None:
     for name in ("b_10.png", "b_9.png", "b_2.png"):
         (tmp_path / name).touch()
-    assert [(i, p.name) for i, p in numbered(tmp_path)] == [
+    assert [(i, p.name) for i, p in pictures_by_index(tmp_path)] == [
         (2, "b_2.png"),
         (9, "b_9.png"),
         (10, "b_10.png"),
     ]
     (tmp_path / "x.png").touch()
-    assert [i for i, _ in numbered(tmp_path)] == [0, 1, 2, 3]
+    assert [i for i, _ in pictures_by_index(tmp_path)] == [0, 1, 2, 3]
 
 
 def test_folders_without_recordings_are_refused(tmp_path: Path) -> None:

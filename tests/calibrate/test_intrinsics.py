@@ -7,7 +7,7 @@ import pytest
 
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.intrinsics import solve_intrinsics
-from mocapd.calibrate.intrinsics.views import Choice, choose_views, coverage, covered
+from mocapd.calibrate.intrinsics.views import Choice, choose_views, coverage, covered_share
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.types import Floats
@@ -73,6 +73,6 @@ def test_blurred_views_are_left_and_the_picture_is_filled() -> None:
     assert len(taken) == 12
     assert all(view.index % 3 for view in taken)
     first = [view for view in soft if view.index % 3][:12]
-    assert covered(taken, SIZE_PX) >= covered(first, SIZE_PX)
+    assert covered_share(taken, SIZE_PX) >= covered_share(first, SIZE_PX)
     assert coverage(taken, SIZE_PX).sum() == 12 * len(BOARD_M)
     assert choose_views([], SIZE_PX, Choice()) == []

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from mocapd.calibrate.colours.lookalikes import described, hull_of, lookalikes
+from mocapd.calibrate.colours.lookalikes import hull_of, lookalike_warning, lookalikes
 from tests.calibrate.swatches import MODEL, NAMES
 
 W, H = 320, 240
@@ -27,7 +27,7 @@ def test_a_bare_room_has_none() -> None:
     pixels, shirt = _room([])
     found = lookalikes(pixels, shirt, MODEL, np.diag(1 / LIGHT))
     assert found == ()
-    assert described(found, (W, H)) == ""
+    assert lookalike_warning(found, (W, H)) == ""
 
 
 def test_boxes_are_outlined_and_named_largest_first() -> None:
@@ -41,7 +41,7 @@ def test_boxes_are_outlined_and_named_largest_first() -> None:
         truth = np.zeros((H, W), np.uint8)
         truth[y0:y1, x0:x1] = 1
         assert (drawn & truth).sum() > 0.9 * (drawn | truth).sum()
-    sentence = described(found, (W, H))
+    sentence = lookalike_warning(found, (W, H))
     assert "pink (bottom left)" in sentence
     assert "blue (top left)" in sentence
 

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board.recordings import find_recordings, read_picture
+from mocapd.calibrate.board.board_recordings import find_recordings, read_picture
 from mocapd.errors import InputError
 from tests.capture.films import picture, write_film
 
@@ -55,7 +55,7 @@ def test_a_huge_size_in_a_header_that_opencv_measures_is_refused(
     # in a process of its own: the limit is read while OpenCV is imported
     code = (
         "import sys; from pathlib import Path\n"
-        "from mocapd.calibrate.board.recordings import read_picture\n"
+        "from mocapd.calibrate.board.board_recordings import read_picture\n"
         "from mocapd.errors import InputError\n"
         "try:\n    read_picture(Path(sys.argv[1]))\n"
         "except InputError as error:\n    print(error)\n"

@@ -11,7 +11,7 @@ from mocapd.calibrate.consistency.findings import Mistake
 from mocapd.calibrate.consistency.joint_scale import scaled_findings
 from mocapd.calibrate.consistency.person_views import PersonView
 from mocapd.calibrate.consistency.rig_judge import Stretch, judge
-from mocapd.calibrate.consistency.view_agreement import mirrored, upside_down, zoomed
+from mocapd.calibrate.consistency.view_agreement import mirror_view, upside_down, zoom_view
 from mocapd.calibrate.consistency.world_judge import judge_world, turned_views
 from mocapd.geometry.camera_model import centre, project, to_camera
 from mocapd.types import Camera, Floats
@@ -91,10 +91,10 @@ def test_a_camera_whose_pictures_are_not_as_calibrated_is_named(rig: str, mistak
 
     def spoiled(one: PersonView) -> PersonView:
         if mistake is Mistake.MIRRORED:
-            return mirrored(one, 640)
+            return mirror_view(one, 640)
         if mistake is Mistake.TURNED:
             return upside_down(one, (640, 480))
-        return zoomed(one, (300.0, 250.0), 1.3)
+        return zoom_view(one, (300.0, 250.0), 1.3)
 
     seen = [[one[0], [spoiled(one[1][0])], *one[2:]] for one in stretches(cameras)]
     [finding] = judge(cameras, seen).findings
@@ -177,7 +177,7 @@ def test_a_zoom_of_an_eighth_shows_in_where_joints_meet_and_none_does_not() -> N
     cameras = RIGS["pair"]
     seen = stretches(cameras)
     assert scaled_findings(cameras, seen) == ()
-    larger = [[one[0], [zoomed(one[1][0], (320.0, 240.0), 1.12)]] for one in seen]
+    larger = [[one[0], [zoom_view(one[1][0], (320.0, 240.0), 1.12)]] for one in seen]
     [finding] = scaled_findings(cameras, larger)
     assert finding.mistake is Mistake.ZOOMED
     assert "larger in those of 'right'" in finding.what

@@ -110,7 +110,7 @@ def test_rings_put_a_camera_back_in_its_place() -> None:
     gross = pairs.xy.copy()
     gross[1, :6, 1] += 0.15  # rings of something else
     found, covariance = place_by_rings(
-        RingPairs(gross, pairs.seen), CAMERAS[0], wrong, loose, STATURE_M
+        RingPairs(gross, pairs.visible), CAMERAS[0], wrong, loose, STATURE_M
     )
     turn = rotations.angle_rad(rotations.from_matrix(found.R), rotations.from_matrix(true.R))
     assert np.degrees(turn) < 0.5

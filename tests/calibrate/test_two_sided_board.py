@@ -185,7 +185,7 @@ def test_corners_of_the_back_move_as_their_slopes_say() -> None:
     points_m = corners_m(SPEC)
     back = BackPrint(points_m.mean(axis=0), np.array([0.003, -0.002, 0.3, 0.004]))
     step = np.array([1e-6, -2e-6, 3e-6, 1e-6])
-    ahead, behind = (back.stepped(s * step).board_from_back.apply(points_m) for s in (1.0, -1.0))
+    ahead, behind = (back.with_step(s * step).board_from_back.apply(points_m) for s in (1.0, -1.0))
     np.testing.assert_allclose((ahead - behind) / 2.0, back.slopes(points_m) @ step, atol=1e-12)
 
 

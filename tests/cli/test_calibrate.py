@@ -159,12 +159,12 @@ def test_into_a_toml_file_it_writes_a_calibration_with_the_colours(
     outcome = calibrate(clean_env, pictures, out, *words)
     assert outcome.code == 0, outcome.err
     saved = load_calibration(out)
-    assert saved.known.rig is not None
-    assert saved.known.rig.names == ("cam0", "cam1")
+    assert saved.calibration.rig is not None
+    assert saved.calibration.rig.names == ("cam0", "cam1")
     assert saved.tables.room is not None
     assert saved.tables.room.floor_known
-    assert saved.known.shirt is not None
-    assert set(saved.known.shirt.white_balance) == {"cam0"}
+    assert saved.calibration.shirt is not None
+    assert set(saved.calibration.shirt.white_balance) == {"cam0"}
     assert "--strokes lacks cam1.png" in outcome.err
     # the strokes lie on the standard's own colours
     colour = saved.tables.camera[0].colour

@@ -14,7 +14,7 @@ from mocapd.service.room_memory import RoomMemory
 from mocapd.session.offline import RecordedTrack, write_track
 from mocapd.types import Bytes
 from mocapd.web.kept_key import kept_key
-from mocapd.wizard.draft_file import FILE_NAME, KeptSetup, write_draft
+from mocapd.wizard.draft_file import FILE_NAME, UnfinishedSetup, write_draft
 from mocapd.wizard.intrinsics.saved_intrinsics import store_intrinsics
 from mocapd.wizard.saving import save_draft
 from mocapd.wizard.step_names import StepName
@@ -34,7 +34,7 @@ def make_exhibit(folder: Path) -> None:
     save_draft(draft, state)
     store_intrinsics(draft, state, WHEN)
     done = frozenset({StepName.CAMERAS, StepName.LENS})
-    write_draft(state / FILE_NAME, KeptSetup(WHEN, done, draft))
+    write_draft(state / FILE_NAME, UnfinishedSetup(WHEN, done, draft))
     for name in ("frames.key", "metrics.key"):
         kept_key(state / name)
     assert draft.rig is not None

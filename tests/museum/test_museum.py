@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibration.calibration_file import FILE_NAME, from_saved, read_calibration
-from mocapd.calibration.saved_sources import SECRETS, known_sources
+from mocapd.calibration.saved_sources import SECRETS, stored_sources
 from mocapd.errors import ConfigError, InputError, MocapdError, NewerFileError
 from mocapd.geometry.rig_file import load_rig
 from mocapd.outputs.mcap.recording_reader import RecordingReader
@@ -244,7 +244,7 @@ def changed(path: Path, change: Change) -> bytes:
     ("name", "read"),
     [
         (f"state/{FILE_NAME}", read_calibration),
-        (f"state/{SECRETS}", lambda path: known_sources(path.parent)),
+        (f"state/{SECRETS}", lambda path: stored_sources(path.parent)),
         (f"state/{LENSES}", lambda path: read_intrinsics(path.parent)),
         (f"state/{DRAFT}", read_draft),
         (f"state/{ROOMS}", lambda path: kept_rooms(path, {})),

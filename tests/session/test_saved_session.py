@@ -11,8 +11,8 @@ import pytest
 from mocapd.calibration.calibration_file import (
     FILE_NAME,
     LoadedCalibration,
+    calibration_of_recording,
     find_calibration,
-    known_of_recording,
     load_calibration,
     read_calibration,
 )
@@ -64,12 +64,12 @@ def test_the_colours_and_proportions_reach_the_tracker(config: Config) -> None:
     saved = saved_for(config)
     assert saved is not None
     draft = full_draft()
-    assert saved.known.wearer.shape_factors is not None
+    assert saved.calibration.wearer.shape_factors is not None
     assert draft.factors is not None
-    assert np.array_equal(saved.known.wearer.shape_factors, draft.factors)
-    assert saved.known.shirt is not None
-    assert len(saved.known.shirt.model) == 2  # personal
-    assert set(saved.known.shirt.white_balance) == {"cam0", "cam1"}
+    assert np.array_equal(saved.calibration.wearer.shape_factors, draft.factors)
+    assert saved.calibration.shirt is not None
+    assert len(saved.calibration.shirt.model) == 2  # personal
+    assert set(saved.calibration.shirt.white_balance) == {"cam0", "cam1"}
 
 
 def test_configured_cameras_that_were_calibrated_take_the_rest_from_there(config: Config) -> None:
@@ -148,14 +148,14 @@ def test_a_recording_is_tracked_with_it_when_its_cameras_are_there(
 ) -> None:
     folder = FolderOrigin(load_folder(write_capture(tmp_path / "capture")))
     saved = load_calibration(config.state_dir / FILE_NAME)
-    known = known_of_recording(saved, folder)
+    known = calibration_of_recording(saved, folder)
     assert known.wearer.stature_m == 1.72
-    assert known.rig is saved.known.rig
+    assert known.rig is saved.calibration.rig
     alone = replace(saved, tables=type(saved.tables)(
         schema=1, made=saved.tables.made, room=saved.tables.room, camera=saved.tables.camera[:1]
     ))  # fmt: skip
     with pytest.raises(ConfigError, match="no camera 'cam1'"):
-        known_of_recording(alone, folder)
+        calibration_of_recording(alone, folder)
 
 
 @pytest.mark.parametrize("kind", ["pipe", "link to nothing", "folder"])

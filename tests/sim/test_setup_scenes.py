@@ -14,7 +14,7 @@ from mocapd.calibrate.extrinsics.bundle_adjustment import adjust_bundle
 from mocapd.calibrate.extrinsics.pose_graph import initial_scene, observations
 from mocapd.calibrate.extrinsics.world_frame import play_area_error, rig_in_world, world_on_floor
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, solve_intrinsics
-from mocapd.calibrate.intrinsics.views import covered
+from mocapd.calibrate.intrinsics.views import covered_share
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, centre_m, corners_m
 from mocapd.geometry.camera_model import centre, project
 from mocapd.sim.board.board_clips import board_scenes, hold_frames, load_board_clips
@@ -112,7 +112,7 @@ def test_the_lens_places_fill_the_pictures_and_give_the_lenses(
 ) -> None:
     for camera in rig().cameras:
         lens = lenses[camera.name]
-        assert covered(list(lens_views[camera.name].values()), camera.size_px) > 0.9
+        assert covered_share(list(lens_views[camera.name].values()), camera.size_px) > 0.9
         for i in (0, 1):
             assert lens.K[i, i] == pytest.approx(camera.K[i, i], rel=0.005)
             assert lens.K[i, 2] == pytest.approx(camera.K[i, 2], abs=4.0)

@@ -68,7 +68,7 @@ class FakeContext:
         assert self._job is None, "one job at a time"
         self._job, self._job_done = job, done
 
-    def saved(self) -> None:
+    def on_saved(self) -> None:
         """Counted."""
         self.times_saved += 1
 

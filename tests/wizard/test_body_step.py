@@ -218,7 +218,7 @@ def test_a_stature_is_asked_for_and_checked(tmp_path: Path, draft: Draft) -> Non
     [
         ({"rig": None}, "the room is not known"),
         ({"colours": {}}, "the colours are not known"),
-        ({"rig": "one"}, "one camera cannot tell size from distance"),
+        ({"rig": "one"}, "one camera cannot separate size from distance"),
     ],
 )
 def test_where_nothing_can_be_measured_the_stature_is_enough(

@@ -35,7 +35,7 @@ def measured(pose_database: PoseDatabase) -> tuple[Filmed, list[Measure], list[M
         watched = Stepping(MeasuringTracker(ready.tracker, one, ready.shape, into.add), ready.shape)
         for frames in filmed.frame_sets(filmed.pictures):
             watched.step(frames)
-        found.append(list(into.taken()))
+        found.append(list(into.take()))
     return filmed, found[0], found[1]
 
 

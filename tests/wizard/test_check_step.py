@@ -93,7 +93,7 @@ def test_usb_is_not_blamed_where_this_machine_is_too_slow(figures: dict[str, Any
 def test_a_camera_that_saw_nobody_is_bad_and_has_no_figures() -> None:
     verdict = camera_verdict("cam1", measures(), ALL_ARRIVE)
     assert verdict.grade is Grade.BAD
-    assert verdict.seen == 0.0
+    assert verdict.visible_share == 0.0
     assert math.isnan(verdict.cm)
     assert verdict_json(verdict)["cm"] is None
 

@@ -243,7 +243,7 @@ def test_without_a_board_the_one_that_is_printed_is_expected(tmp_path: Path) -> 
         ("board", {"dictionary": "DICT_NONE"}, "no marker dictionary"),
         ("ruler", {"mm": 10}, "cannot be the ruler .*in millimetres"),
         ("ruler", {}, "missing required field `mm`"),
-        ("use_saved", {"camera": "cam0"}, "no lens of before"),
+        ("use_saved", {"camera": "cam0"}, "no earlier lens"),
         ("use_saved", {"camera": "cam9"}, "no camera 'cam9'"),
         ("finish", {}, "not known well enough"),
         ("paint", {}, "no command"),

@@ -17,11 +17,11 @@ from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.draft_file import (
     FILE_NAME,
     OF_EARLIER_VERSIONS,
-    KeptSetup,
+    UnfinishedSetup,
     read_draft,
     write_draft,
 )
-from mocapd.wizard.setup_keeper import SetupKeeper, kept_cameras
+from mocapd.wizard.setup_keeper import SetupKeeper, unfinished_cameras
 from mocapd.wizard.step_names import StepName
 from tests.wizard.drafts import begun, drafted, full_draft, same
 from tests.wizard.fake_webcam import FakeWebcam
@@ -33,7 +33,7 @@ NO_LOCKS = CameraLocks(())
 
 def keep(folder: Path, draft: Draft, when: datetime = WHEN) -> Path:
     path = folder / FILE_NAME
-    write_draft(path, KeptSetup(when, DONE, draft))
+    write_draft(path, UnfinishedSetup(when, DONE, draft))
     return path
 
 
@@ -193,7 +193,7 @@ def test_cameras_are_opened_under_the_names_and_in_the_modes_they_had(tmp_path: 
             DraftCamera("left", "usb:3-2:1:1:b", (640, 480)),
         ),
     )
-    assert kept_cameras(tmp_path, saved) == saved
+    assert unfinished_cameras(tmp_path, saved) == saved
     keep(tmp_path, drafted())
-    assert [one.id for one in kept_cameras(tmp_path, saved)] == ["cam0", "cam1", "left"]
-    assert kept_cameras(tmp_path, saved)[0] == kept[0]
+    assert [one.id for one in unfinished_cameras(tmp_path, saved)] == ["cam0", "cam1", "left"]
+    assert unfinished_cameras(tmp_path, saved)[0] == kept[0]

@@ -23,7 +23,7 @@ from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.check.check_step import missing
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.draft_file import FILE_NAME, KeptSetup, read_draft, write_draft
+from mocapd.wizard.draft_file import FILE_NAME, UnfinishedSetup, read_draft, write_draft
 from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.saving import load_draft, save_draft
 from mocapd.wizard.step import StepState
@@ -140,7 +140,7 @@ def test_it_is_remembered_in_both_files(tmp_path: Path) -> None:
     path = calibration_path(tmp_path)
     assert not load_draft(tmp_path).has_shirt
     assert not from_saved(read_calibration(path), path).wearer.has_shirt
-    write_draft(tmp_path / FILE_NAME, KeptSetup(datetime.now(UTC), frozenset(), draft))
+    write_draft(tmp_path / FILE_NAME, UnfinishedSetup(datetime.now(UTC), frozenset(), draft))
     assert not read_draft(tmp_path / FILE_NAME).draft.has_shirt
 
 
@@ -183,7 +183,7 @@ def test_a_turned_camera_is_found_by_the_outline() -> None:
         for frames in film.frames:
             stepping.step(frames)
         every = Delivery(40, 0, 30.0, 30.0, 320)
-        verdicts.append(camera_verdict(second.name, into.taken(), every, has_shirt=False))
+        verdicts.append(camera_verdict(second.name, into.take(), every, has_shirt=False))
     assert verdicts[0].match > 0.6
     assert verdicts[1].reprojection_px > verdicts[0].reprojection_px + 2.0
     assert verdicts[1].problem is not None

@@ -49,7 +49,7 @@ class FindingStep:
         if isinstance(command, Find):
             self._context.draft = replace(drafted(), cameras=self._context.draft.cameras)
         else:
-            self._context.saved()
+            self._context.on_saved()
 
     def view(self) -> StepView:
         return StepView(StepState.DONE, "Go on.", 1.0)
@@ -140,16 +140,16 @@ def test_after_a_kill_the_next_setup_goes_on_where_it_was(tmp_path: Path) -> Non
     assert kept["done"] == ["cameras", "lens"]
     assert offered.step is StepName.CAMERAS
     assert offered.view.state is StepState.WAITING
-    assert "kept" in run.refused("go", step="room")
+    assert "unfinished" in run.refused("go", step="room")
     run.after("find")
-    assert "kept" in run.refused("next")
+    assert "unfinished" in run.refused("next")
     run.after("find")  # what is found before the choice does not take the place of what is kept
     view = run.after("resume")
     assert view.step is StepName.ROOM  # the first that is not done
     assert {StepName.CAMERAS, StepName.LENS} <= view.done
     assert "kept" not in view.view.details
     assert same(run.wizard.draft, drafted())
-    assert "no setup of before is kept" in run.refused("resume")
+    assert "there is no unfinished setup" in run.refused("resume")
     run.stop()
     again = Run(tmp_path)  # nothing new was found: still the same one
     assert "kept" in again.wizard.newer(0, WAIT_S).view.details
@@ -196,4 +196,4 @@ def test_where_nothing_can_be_written_the_setup_goes_on(
     run.after("find")
     run.after("go", step="room")
     run.stop()
-    assert caplog.text.count("the setup in progress is not kept") == 1
+    assert caplog.text.count("the setup in progress cannot be stored") == 1

@@ -10,7 +10,7 @@ from mocapd.capture.webcam.identity import WebcamIdentity, parse_identity
 from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.errors import InputError, UnavailableError
 from mocapd.wizard.cameras.cameras_verbs import CAMERAS, Lock
-from mocapd.wizard.cameras.found_cameras import plugged_cameras, where_now
+from mocapd.wizard.cameras.initial_cameras import plugged_cameras, where_now
 from mocapd.wizard.cameras.same_port import AsksForPorts, find_port_changes
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context

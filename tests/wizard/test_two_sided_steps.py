@@ -152,8 +152,8 @@ def test_a_board_turned_over_slants_as_before_and_tells_something_new() -> None:
             if view is not None
         }
         looks.append(Look(index, 0, {}, observed))
-    for name, one in looks[0].seen.items():
-        other = looks[1].seen[name]
+    for name, one in looks[0].observations.items():
+        other = looks[1].observations[name]
         assert one.view.back != other.view.back
         here, there = (rough_place(x.view, corners_m(SPEC), (640, 480)) for x in (one, other))
         assert here is not None

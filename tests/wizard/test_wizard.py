@@ -97,7 +97,7 @@ class ScriptedStep:
             case Job(job=job):
                 self.context.start_job(job, lambda result: self.happened.append(f"got {result}"))
             case SaveIt():
-                self.context.saved()
+                self.context.on_saved()
             case Raise(error=error):
                 raise error
             case RaiseInTick(error=error):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.errors import InputError
-from mocapd.exports.sampled_motion import SampledMotion, Samples, resampled, usual_rate_hz
+from mocapd.exports.sampled_motion import SampledMotion, Samples, resample, usual_rate_hz
 from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.wire import SkeletonFrame
@@ -53,7 +53,7 @@ def motion_of(reader: RecordingReader, person: int, rate_hz: float | None) -> Ex
     samples = _samples(frames)
     try:
         rate_hz = rate_hz if rate_hz is not None else usual_rate_hz(samples.times_ns)
-        motion = resampled(samples, skeleton, rate_hz)
+        motion = resample(samples, skeleton, rate_hz)
     except InputError as error:
         raise InputError(error.what, place, error.fix) from None
     return Exported(motion, len(samples.times_ns), lost, others)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import mocapd
 from mocapd.boundary.files import is_file
-from mocapd.calibrate.board.recordings import find_recordings
+from mocapd.calibrate.board.board_recordings import find_recordings
 from mocapd.calibrate.colours.stroke_check import require_good_strokes
 from mocapd.calibrate.extrinsics.folder_calibration import CameraReport, FolderCalibration
 from mocapd.calibration.calibration_writing import write_calibration

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from mocapd.boundary.files import is_absent
 from mocapd.calibration.calibration_file import FILE_NAME
-from mocapd.calibration.saved_sources import require_password, sources_by_shown
+from mocapd.calibration.saved_sources import require_password, sources_by_masked
 from mocapd.errors import ConfigError
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -21,17 +21,17 @@ def webcam_host(config: "Config", step: "StepName | None", following: str) -> Ow
     """The cameras of the configuration, else all that are plugged in; following: the command to run afterwards. Raises
     MocapdError."""
     from mocapd.capture.webcam.webcam_listing import list_cameras
-    from mocapd.wizard.cameras.found_cameras import (
+    from mocapd.wizard.cameras.initial_cameras import (
         configured_cameras,
         identities,
         plugged_cameras,
         where_now,
     )
     from mocapd.wizard.cameras.same_port import find_port_changes
-    from mocapd.wizard.setup_keeper import kept_cameras
+    from mocapd.wizard.setup_keeper import unfinished_cameras
 
     before, infos = _with_passwords(saved_draft(config, step), config), list_cameras()
-    known = kept_cameras(config.state_dir, before.cameras)
+    known = unfinished_cameras(config.state_dir, before.cameras)
     if step is not None:
         for one in before.cameras:
             require_password(one.id, one.source, str(config.state_dir))
@@ -62,7 +62,7 @@ def webcam_host(config: "Config", step: "StepName | None", following: str) -> Ow
 
 def _with_passwords(draft: Draft, config: "Config") -> Draft:
     """With those of the configuration, where they are not kept with the calibration."""
-    known = sources_by_shown((one.id, one.source) for one in config.camera)
+    known = sources_by_masked((one.id, one.source) for one in config.camera)
     cameras = (
         replace(one, source=known.get((one.id, one.source), one.source)) for one in draft.cameras
     )

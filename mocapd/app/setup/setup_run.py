@@ -101,9 +101,11 @@ def _alone(
     following = next_command(config.state_dir, usual=not (options.demo or options.own_place))
     host = (demo_host if options.demo else webcam_host)(config, step, following)
     # a thread nobody watches must not die unseen either
-    threading.excepthook = lambda args: host.died(args.exc_value or RuntimeError(args.exc_type))
+    threading.excepthook = lambda args: host.on_thread_died(
+        args.exc_value or RuntimeError(args.exc_type)
+    )
     signals.ends(host)
-    server = WebServer(host, config.web, host.died, place)
+    server = WebServer(host, config.web, host.on_thread_died, place)
     try:
         server.start()
         host.start()
@@ -111,10 +113,10 @@ def _alone(
         _browse(server.redirect, options.browser)
         until_s = float("inf")
         while not host.wait(LOOK_EVERY_S) and time.monotonic() < until_s:
-            if host.saved and until_s == float("inf"):
+            if host.is_saved and until_s == float("inf"):
                 until_s = time.monotonic() + STAY_S
                 print(_what_next(config.state_dir, following), flush=True)
-        if host.saved and until_s == float("inf"):  # ended in the moment it was saved
+        if host.is_saved and until_s == float("inf"):  # ended in the moment it was saved
             print(_what_next(config.state_dir, following), flush=True)
     except ThreadDiedError as error:
         traceback.print_exception(error.__cause__)

@@ -1,1 +1,1 @@
-"""The calibration board: its layout, its corners in pictures, its motion, recordings of it."""
+"""The calibration board: detection in pictures, motion, recordings."""

@@ -1,8 +1,8 @@
-"""The back of a two-sided board: where its print lies behind the front's, and whether it was glued on well.
+"""The back of a two-sided board: its alignment with the front, and a verdict on the gluing.
 
-Four numbers (4,), called an offset: the middle of the back's print from that of the front's, along a row
-and down it [m], how far it is turned about that middle [rad], and the thickness of the board [m]; all in
-the board's frame, so right, down and clockwise are as somebody sees it who looks at the front.
+An offset (4,) has: the shift of the back print's middle from the front's, along a row and down it [m], the
+rotation about that middle [rad], and the thickness of the board [m]; all in the board's frame, so right, down
+and clockwise are as viewed from the front.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ OFFSET = 4
 
 @dataclass(frozen=True, slots=True)
 class GluingPrior:
-    """What is known of an offset before it is measured: its mean and standard deviations.
+    """The prior of an offset: its mean and standard deviations.
 
     The thickness spans a sheet printed on both sides and a plate of foam of 10 mm.
     """
@@ -28,14 +28,14 @@ class GluingPrior:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BackPrint:
-    """Where the back's print is: `offset` (4,), and `middle_m` (3,) of the front's, in the board's frame."""
+    """The pose of the back's print: `offset` (4,), and `middle_m` (3,) of the front's, in the board's frame."""
 
     middle_m: Floats
     offset: Floats
 
     @property
     def board_from_back(self) -> RigidTransform:
-        """Takes a corner from where it would be on the front to where it is on the back."""
+        """Takes a corner from its place on the front to its place on the back."""
         x_m, y_m, turn_rad, thickness_m = self.offset
         c, s = np.cos(turn_rad), np.sin(turn_rad)
         R = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -43,36 +43,36 @@ class BackPrint:
         return RigidTransform(R, self.middle_m + shift_m - R @ self.middle_m)
 
     def slopes(self, points_m: Floats) -> Floats:
-        """(N,3,4): how corners (N,3) of the front, taken to the back, move with the offset."""
+        """(N,3,4): derivatives of the front's corners (N,3), taken to the back, with respect to the offset."""
         arm_m = self.board_from_back.rotate(points_m - self.middle_m)
         out = np.zeros((len(points_m), 3, OFFSET))
         out[:, 0, 0] = out[:, 1, 1] = out[:, 2, 3] = 1.0
         out[:, 0, 2], out[:, 1, 2] = -arm_m[:, 1], arm_m[:, 0]
         return out
 
-    def stepped(self, step: Floats) -> "BackPrint":
+    def with_step(self, step: Floats) -> "BackPrint":
         """With a step (4,) added to the offset."""
         return BackPrint(self.middle_m, self.offset + step)
 
 
 def usual_back(board_m: Floats, prior: GluingPrior | None = None) -> BackPrint:
-    """As it is expected of a board with these corners (n,3)."""
+    """The prior's mean offset, for a board with these corners (n,3)."""
     return BackPrint(board_m.mean(axis=0), np.array((prior or GluingPrior()).mean))
 
 
 @dataclass(frozen=True, slots=True)
 class GluingLimits:
-    """Above which the person is told."""
+    """Thresholds above which the user gets a warning."""
 
     shift_mm: float = 3.0
     turn_deg: float = 1.0
-    least_sigmas: float = 3.0  # what is off by less may be chance
+    least_sigmas: float = 3.0  # smaller deviations may be chance
     unknown_mm: float = 3.0  # standard deviation of the shift or of the thickness
 
 
 @dataclass(frozen=True, slots=True)
 class Gluing:
-    """How the back was glued on, as measured: see the head of this file for the directions.
+    """The measured gluing of the back; the module's docstring gives the directions.
 
     `shift_deviation_mm`, `thickness_deviation_mm`: standard deviations, of the worse direction.
     """
@@ -110,7 +110,7 @@ def gluing_of(back: BackPrint, deviation: Floats) -> Gluing:
 
 
 def gluing_trouble(gluing: Gluing, limits: GluingLimits | None = None) -> str:
-    """What must be said of it, with how to mend it; "" where it is glued well and known well."""
+    """A warning and its remedy; "" where the gluing is good and measured precisely."""
     limits = limits or GluingLimits()
     shift_mm = float(np.hypot(gluing.right_mm, gluing.down_mm))
     shifted = shift_mm > max(limits.shift_mm, limits.least_sigmas * gluing.shift_deviation_mm)
@@ -120,7 +120,7 @@ def gluing_trouble(gluing: Gluing, limits: GluingLimits | None = None) -> str:
     if shifted or turned:
         return (
             f"the back of the board is not glued in register with its front: it lies {gluing}. The cameras "
-            "are right all the same, for this was measured; glue it anew, cross on cross, before you "
+            "are right all the same, for this was measured; glue it again, cross on cross, before you "
             "use the board with other programs"
         )
     unknown_mm = max(gluing.shift_deviation_mm, gluing.thickness_deviation_mm)

@@ -1,4 +1,4 @@
-"""The board lying still: noticed, and its corners averaged over the pictures of it."""
+"""Detects a board at rest, and averages its corners over pictures."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -12,13 +12,13 @@ from mocapd.calibrate.extrinsics.world_frame import camera_centres
 from mocapd.calibration.board_spec import centre_m
 from mocapd.types import Floats
 
-LONG_NS = 1_500_000_000  # at rest so long, it has been laid down
-_SAME_PX = 2.0  # corners this near are of the board at rest
+LONG_NS = 1_500_000_000  # after so long at rest the user has laid it down
+_SAME_PX = 2.0  # corners that move less are of the board at rest
 _FEWEST = 3  # looks to average
-_LEVEL_RAD = 0.9  # from the up that is guessed from the cameras, which look down
+_LEVEL_RAD = 0.9  # from the up direction estimated from the cameras, which look down
 _ROLL_RAD = 0.26  # of a camera about its axis: they stand upright on shelves and tripods
-_UNDER_M = 0.1  # the floor is so far under the places where the board was held
-_ABOVE_M = 0.2  # the lowest camera is so far above the floor
+_UNDER_M = 0.1  # the floor is at least this far below the earlier places of the board
+_ABOVE_M = 0.2  # the lowest camera is at least this far above the floor
 
 
 class BoardAtRest:
@@ -26,45 +26,49 @@ class BoardAtRest:
 
     def __init__(self) -> None:
         self._looks: list[Look] = []
-        self._seen: dict[str, list[BoardObservation]] = {}
+        self._observations: dict[str, list[BoardObservation]] = {}
 
     @property
     def since_ns(self) -> int:
-        """How long it has been at rest [ns]."""
+        """Duration at rest [ns]."""
         return self._looks[-1].t_ns - self._looks[0].t_ns if self._looks else 0
 
     @property
-    def seen(self) -> bool:
-        """Whether it is at rest in some camera and there are enough pictures of it."""
+    def has_enough(self) -> bool:
+        """Whether enough looks show the board at rest."""
         return len(self._looks) >= _FEWEST
 
     def take(self, look: Look, still: Mapping[str, bool]) -> None:
-        """A further look; `still[camera]`: whether the board is at rest in it."""
-        at_rest = {name: seen for name, seen in look.seen.items() if still[name]}
+        """Add a look; `still[camera]`: whether the board is at rest in that camera."""
+        at_rest = {name: now for name, now in look.observations.items() if still[name]}
         if not at_rest:
             self.forget()
             return
-        if any(self._moved(name, seen) for name, seen in at_rest.items()):
+        if any(self._has_moved(name, now) for name, now in at_rest.items()):
             self.forget()
         self._looks.append(look)
-        for name, seen in at_rest.items():
-            self._seen.setdefault(name, []).append(seen)
+        for name, now in at_rest.items():
+            self._observations.setdefault(name, []).append(now)
 
     def forget(self) -> None:
-        """It has moved."""
-        self._looks, self._seen = [], {}
+        """Start over after a movement."""
+        self._looks, self._observations = [], {}
 
     def views(self) -> dict[str, BoardView]:
         """By camera the mean of its corners, under the index of the newest look."""
         index = self._looks[-1].index
-        return {name: _mean([seen.view for seen in own], index) for name, own in self._seen.items()}
+        return {
+            name: _mean([observation.view for observation in own], index)
+            for name, own in self._observations.items()
+        }
 
-    def _moved(self, name: str, seen: BoardObservation) -> bool:
-        before = self._seen.get(name)
+    def _has_moved(self, name: str, observation: BoardObservation) -> bool:
+        before = self._observations.get(name)
         if not before:
             return False
-        _, then, now = np.intersect1d(before[0].view.ids, seen.view.ids, return_indices=True)
-        shift = seen.view.corners_px[now] - before[0].view.corners_px[then]
+        first, view = before[0].view, observation.view
+        _, then, now = np.intersect1d(first.ids, view.ids, return_indices=True)
+        shift = view.corners_px[now] - first.corners_px[then]
         return not len(now) or float(np.median(np.linalg.norm(shift, axis=1))) > _SAME_PX
 
 
@@ -72,15 +76,15 @@ def _mean(views: list[BoardView], index: int) -> BoardView:
     ids, counts = np.unique(np.concatenate([view.ids for view in views]), return_counts=True)
     ids = ids[2 * counts >= len(views)]
     rows = [
-        np.stack([view.corners_px[view.ids == one][0] for view in views if one in view.ids])
-        for one in ids
+        np.stack([view.corners_px[view.ids == corner][0] for view in views if corner in view.ids])
+        for corner in ids
     ]
     corners_px = np.stack([row.mean(axis=0) for row in rows])
     return replace(views[-1], index=index, ids=ids, corners_px=corners_px)
 
 
 def looks_like_floor(extrinsics: SceneExtrinsics, views: Mapping[str, BoardView]) -> bool:
-    """Whether a board at rest lies on the floor, face up: level as the cameras stand, under all its places."""
+    """Whether a board at rest lies on the floor, face up: level relative to the cameras, below all earlier places."""
     return _lies(extrinsics, views, face_up=True)
 
 
@@ -105,9 +109,9 @@ def _lies(extrinsics: SceneExtrinsics, views: Mapping[str, BoardView], face_up: 
 
 
 def _lowest_m(extrinsics: SceneExtrinsics, up: Floats) -> float:
-    """The height under which the board is lower than wherever it was held."""
+    """A height [m] below almost all places of the board in the user's hands."""
     if not extrinsics.indices:
         return float("inf")
     middles = extrinsics.bundle.scene.scene_from_board.apply(centre_m(extrinsics.spec))
-    # not the very lowest: some may be wrong
+    # a percentile, since some poses may be wrong
     return float(np.percentile(middles @ up, 20)) - _UNDER_M

@@ -1,4 +1,4 @@
-"""The corners of a calibration board in a picture, or the reason why there are none."""
+"""Finds the corners of a calibration board in a picture."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,14 +15,14 @@ from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, fir
 from mocapd.errors import ConfigError
 from mocapd.types import Bytes, Floats, Ints
 
-_KNOWN_MARKERS = 250  # of a dictionary: no board that is carried has more
-_PLENTY = 0.6  # share of the corners above which nobody looks twice
+_MARKERS = 250  # of a dictionary: no portable board has more
+_PLENTY = 0.6  # share of the corners that needs no second search
 _ENLARGED_UP_TO_PX = 800  # width of a picture that is enlarged; a larger one takes too long
 FEWEST_CORNERS = 6  # in one picture; 4 fix the pose of a plane, the rest check it
 
 
 class Reason(StrEnum):
-    """Why a picture has no board in it that can be used, as told to the user."""
+    """Why a picture has no usable board, in the user's words."""
 
     TOO_DARK = "the picture is too dark"
     BLURRED = "the picture is blurred"
@@ -38,8 +38,8 @@ class Reason(StrEnum):
 class BoardView:
     """The board in one picture: ids (n,) of corners, corners_px (n,2), ascending by id.
 
-    `sharpness` is the rise of the steepest edges, in parts of the contrast per pixel. `back`: of a
-    two-sided board the back is seen, whose markers are mirrored.
+    `sharpness` is the rise of the steepest edges, in parts of the contrast per pixel. `back`: the view is of
+    the back of a two-sided board, whose markers are mirrored.
     """
 
     index: int
@@ -51,7 +51,7 @@ class BoardView:
 
 @dataclass(frozen=True, slots=True)
 class DetectionFailure:
-    """No usable board in this picture. `detail` adds what was seen instead; `markers`: how many of any dictionary."""
+    """No usable board in this picture. `detail`: what the picture shows instead; `markers`: how many of any dictionary."""
 
     index: int
     reason: Reason
@@ -60,7 +60,7 @@ class DetectionFailure:
 
 
 class BoardDetector:
-    """Finds one kind of board. Not to be shared by threads."""
+    """Finds one kind of board. Not thread-safe."""
 
     def __init__(self, spec: BoardSpec) -> None:
         self.spec = spec
@@ -74,18 +74,20 @@ class BoardDetector:
             )
 
     def find(self, pixels: Bytes, index: int = 0) -> BoardView | None:
-        """The board in a picture (h,w,3) BGR or (h,w) grey; None without enough of it.
+        """The board in a picture (h,w,3) BGR or (h,w) grey; None where too few corners are visible.
 
-        Raises ConfigError when OpenCV cannot look for such a board.
+        Raises ConfigError when OpenCV does not support such a board.
         """
         grey = self.as_printed(pixels)
         back = False
         try:
-            found = self._of_chessboard(grey) if self._charuco is None else self._of_charuco(grey)
-            if self.spec.two_sided and self._few(found):
-                mirrored = self._of_charuco(flipped(grey))
-                back = mirrored is not None and (found is None or len(mirrored[0]) > len(found[0]))
-                found = mirrored if back else found
+            corners = self._of_chessboard(grey) if self._charuco is None else self._of_charuco(grey)
+            if self.spec.two_sided and self._few(corners):
+                mirrored = self._of_charuco(mirror_image(grey))
+                back = mirrored is not None and (
+                    corners is None or len(mirrored[0]) > len(corners[0])
+                )
+                corners = mirrored if back else corners
         except cv2.error as error:
             raise ConfigError(
                 f"OpenCV cannot look for a {self.spec} in a picture of"
@@ -93,9 +95,9 @@ class BoardDetector:
                 "the board",
                 "give another board, or pictures of another size",
             ) from None
-        if found is None:
+        if corners is None:
             return None
-        ids, corners_px = found
+        ids, corners_px = corners
         if back:
             corners_px = corners_px * [-1.0, 1.0] + [grey.shape[1] - 1.0, 0.0]
         if len(ids) < FEWEST_CORNERS or _on_a_line(corners_px):
@@ -103,47 +105,47 @@ class BoardDetector:
         return BoardView(index, ids, corners_px, edge_sharpness(grey, corners_px), back)
 
     def as_printed(self, pixels: Bytes) -> Bytes:
-        """The picture in grey, dark on light also for an inverted board."""
+        """The picture in grey, dark on light for an inverted board, too."""
         grey = as_grey(pixels)
         return 255 - grey if self.spec.inverted else grey
 
     def markers(self, grey: Bytes) -> Ints:
-        """Ids of the markers in sight, whether or not they fit the board; of the first 250."""
+        """Ids of the visible markers, of any board; of the first 250."""
         if self._charuco is None:
             return np.zeros(0, np.int64)
-        known = first_markers(self.spec.dictionary, _KNOWN_MARKERS)
-        ids: Any = cv2.aruco.ArucoDetector(known).detectMarkers(grey)[1]
+        dictionary = first_markers(self.spec.dictionary, _MARKERS)
+        ids: Any = cv2.aruco.ArucoDetector(dictionary).detectMarkers(grey)[1]
         return np.zeros(0, np.int64) if ids is None else np.sort(ids.ravel()).astype(np.int64)
 
     def _of_charuco(self, grey: Bytes) -> tuple[Ints, Floats] | None:
-        """A far board is looked at again enlarged: with cells of 2 px that finds four times the corners."""
+        """Searches an enlarged picture for a far board: with cells of 2 px that finds four times the corners."""
         corners, ids, _, markers = self._charuco.detectBoard(grey)
-        found = None if ids is None else _ascending(corners, ids)
-        if markers is None or not self._few(found) or grey.shape[1] > _ENLARGED_UP_TO_PX:
-            return found
+        result = None if ids is None else _ascending(corners, ids)
+        if markers is None or not self._few(result) or grey.shape[1] > _ENLARGED_UP_TO_PX:
+            return result
         large = cv2.resize(grey, None, fx=2.0, fy=2.0, interpolation=cv2.INTER_CUBIC)
         corners, ids, _, _ = self._charuco_enlarged.detectBoard(large)
-        if ids is None or (found is not None and len(ids) <= len(found[0])):
-            return found
+        if ids is None or (result is not None and len(ids) <= len(result[0])):
+            return result
         # pixel centres are at integers in both pictures
         return _ascending((corners + 0.5) / 2.0 - 0.5, ids)
 
-    def _few(self, found: tuple[Ints, Floats] | None) -> bool:
+    def _few(self, corners: tuple[Ints, Floats] | None) -> bool:
         columns, rows = self.spec.grid
-        return found is None or len(found[0]) < _PLENTY * columns * rows
+        return corners is None or len(corners[0]) < _PLENTY * columns * rows
 
     def _of_chessboard(self, grey: Bytes) -> tuple[Ints, Floats] | None:
         columns, rows = self.spec.grid
-        # a part of a larger board looks like the board itself: told only when all of it is found
+        # a part of a larger board looks like the board itself: CALIB_CB_LARGER finds the whole of it
         flags = cv2.CALIB_CB_ACCURACY | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER
-        found, corners, squares = cv2.findChessboardCornersSBWithMeta(
+        is_found, corners, squares = cv2.findChessboardCornersSBWithMeta(
             grey, (columns, rows), flags=flags
         )
-        if not found or squares.shape != (rows, columns):
+        if not is_found or squares.shape != (rows, columns):
             return None
         corners_px = corners.reshape(-1, 2).astype(float)
-        # Numbered from an end that the finder chose. The first square is black, which tells the
-        # ends apart where the numbers of columns and rows are not both even or both odd.
+        # OpenCV numbers the corners from either end. The first square is black, which identifies the
+        # end where the numbers of columns and rows are not both even or both odd.
         if self.spec.turns_show and not _first_is_black(grey, corners_px.reshape(rows, columns, 2)):
             corners_px = corners_px[::-1].copy()
         return np.arange(rows * columns), corners_px
@@ -155,7 +157,7 @@ def _ascending(corners: Floats, ids: Ints) -> tuple[Ints, Floats]:
 
 
 def _for_small_markers() -> Any:
-    """Borders may be rounder, and more bits may be wrong: only the board's own markers are known."""
+    """Tolerates rounder borders and more wrong bits: the dictionary has only the board's own markers."""
     parameters = cv2.aruco.DetectorParameters()
     parameters.adaptiveThreshWinSizeStep = 4
     parameters.polygonalApproxAccuracyRate = 0.08
@@ -164,7 +166,7 @@ def _for_small_markers() -> Any:
     return parameters
 
 
-def flipped(grey: Bytes) -> Bytes:
+def mirror_image(grey: Bytes) -> Bytes:
     """The mirror image of a picture (h,w), left and right exchanged."""
     return np.ascontiguousarray(grey[:, ::-1])
 
@@ -183,7 +185,7 @@ def _on_a_line(corners_px: Floats) -> bool:
 
 
 def _first_is_black(grey: Bytes, corners_px: Floats) -> bool:
-    """Whether the squares of the colour of the very first one are the dark ones."""
+    """Whether the squares with the colour of the very first one are dark."""
     middles = 0.25 * (
         corners_px[:-1, :-1] + corners_px[1:, :-1] + corners_px[:-1, 1:] + corners_px[1:, 1:]
     )
@@ -195,9 +197,9 @@ def _first_is_black(grey: Bytes, corners_px: Floats) -> bool:
 
 
 def settle_variant(spec: BoardSpec, pictures: Sequence[Bytes]) -> BoardSpec:
-    """The spec, inverted or in the other layout where the pictures show that board instead.
+    """The spec, or its inverted or other layout where the pictures show that board instead.
 
-    As given when that is found in any of them, and when nothing is.
+    Unchanged when any picture shows the board of the spec, and when none shows any variant.
     """
     variants = [replace(spec, inverted=i, legacy=spec.legacy) for i in _first(spec.inverted)]
     if spec.kind is BoardKind.CHARUCO and spec.rows % 2 == 0:

@@ -1,4 +1,4 @@
-"""The board in the cameras' pictures of one instant, and how fast its corners move."""
+"""The board in the cameras' pictures of one instant, and the speed of its corners."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,14 +8,14 @@ import numpy as np
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.types import Frame
 
-_REMEMBERED_NS = 700_000_000  # after which the board's last place tells nothing of its motion
+_REMEMBERED_NS = 700_000_000  # an older view does not give the board's motion
 _FRAME_NS = 1e9 / 30.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoardObservation:
-    """The board in one picture; `motion_px`: of its corners since the look before [px per 1/30 s],
-    infinite when it was not seen then."""
+    """The board in one picture; `motion_px`: of its corners since the last look [px per 1/30 s], infinite
+    where that look did not show the board."""
 
     view: BoardView
     t_ns: int
@@ -24,22 +24,22 @@ class BoardObservation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Look:
-    """One instant: cameras that had a picture, and the board in those that saw it."""
+    """One instant: cameras that had a picture, and the observations of the board."""
 
     index: int
     t_ns: int
     frames: Mapping[str, Frame]
-    seen: Mapping[str, BoardObservation]
+    observations: Mapping[str, BoardObservation]
 
     @property
     def spread_ns(self) -> int:
         """Between the first and the last of the pictures with the board [ns]."""
-        times = [one.t_ns for one in self.seen.values()]
+        times = [observation.t_ns for observation in self.observations.values()]
         return max(times) - min(times) if times else 0
 
 
 def motion_px(before: BoardObservation | None, view: BoardView, t_ns: int) -> float:
-    """Of the corners of a view since the one before [px per 1/30 s]; infinite when that is too long ago."""
+    """Of the corners of a view since the one before [px per 1/30 s]; infinite after too long a time."""
     if before is None or not 0 < t_ns - before.t_ns <= _REMEMBERED_NS:
         return float("inf")
     _, then, now = np.intersect1d(before.view.ids, view.ids, return_indices=True)

@@ -1,4 +1,4 @@
-"""How a board moves between frames: what cameras that do not expose at the same instant see of it."""
+"""The motion of a board between frames, for cameras that do not expose at the same instant."""
 
 from collections.abc import Sequence
 
@@ -12,9 +12,9 @@ from mocapd.types import Floats
 _REACH = 2  # positions to either side
 
 
-def followed_from_one_side(indices: Sequence[int], longest_gap: float) -> NDArray[np.bool_]:
-    """(V,): positions without a neighbour within `longest_gap` [frames] on one of their sides: their motion is not
-    known as well."""
+def has_one_neighbour(indices: Sequence[int], longest_gap: float) -> NDArray[np.bool_]:
+    """(V,): positions without a neighbour within `longest_gap` [frames] on one of their sides; the estimate of their
+    motion is less accurate."""
     order = np.argsort(indices)
     near = np.diff(np.asarray(indices, dtype=float)[order]) <= longest_gap
     out = np.ones(len(order), bool)
@@ -26,7 +26,7 @@ def board_paths(scene: ReprojectionProblem, indices: Sequence[int], longest_gap:
     """(V,2,6): velocity [per frame] and half the acceleration [per frame^2] of turn [rad] and shift [m].
 
     Of the polynomial through a position and up to two before and two after it, each within `longest_gap` [frames]
-    of the next. With fewer than two of them the board is taken to stand still, and a delay shows nothing there.
+    of the next. A position with fewer than two neighbours counts as still, so it says nothing of a delay.
     """
     out = np.zeros((len(indices), 2, 6))
     order = np.argsort(indices)
@@ -49,7 +49,7 @@ def board_paths(scene: ReprojectionProblem, indices: Sequence[int], longest_gap:
 
 
 def _step(scene: ReprojectionProblem, start: int, end: int) -> Floats:
-    """Turn [rad] and shift [m] (6,) from one position to the other."""
+    """Rotation [rad] and shift [m] (6,) from one position to the other."""
     before, after = scene.scene_from_board[start], scene.scene_from_board[end]
     turn = after.R @ before.R.T
     shift_m = after.t_m - before.t_m

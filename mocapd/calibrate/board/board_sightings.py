@@ -1,4 +1,4 @@
-"""Sightings: several cameras saw the board at rest at one instant, from which extrinsics are solved."""
+"""Sightings: looks in which several cameras show the board at rest; the input of the extrinsics."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -16,8 +16,8 @@ Views = Mapping[str, Mapping[int, BoardView]]
 
 @dataclass(frozen=True, slots=True)
 class SightingParams:
-    """most_motion: of corners [parts of the picture's width per 1/30 s]; most_spread_s: between the
-    cameras' pictures. Together they keep the error of pictures not taken at once under a third of a pixel."""
+    """most_motion: of corners [parts of the picture's width per 1/30 s]; most_spread_s: between the cameras'
+    pictures. Together they limit the error of pictures at different times to a third of a pixel."""
 
     most_motion: float = 0.0012
     most_spread_s: float = 0.02
@@ -26,7 +26,7 @@ class SightingParams:
 
 
 class BoardSightings:
-    """The board's views by camera and index; those of one index are of one instant."""
+    """The board's views by camera and index; views of one index are of one instant."""
 
     def __init__(
         self,
@@ -40,53 +40,54 @@ class BoardSightings:
         self._places: dict[tuple[str, str], list[Floats]] = {
             pair: [] for pair in combinations(sorted(sizes_px), 2)
         }
-        self._new = dict.fromkeys(self._places, 0)  # sightings of each pair that were offered here
+        self._new = dict.fromkeys(self._places, 0)  # sightings of each pair from `offer`
 
     @property
     def views(self) -> Views:
         """By camera and index."""
         return {name: dict(own) for name, own in self._views.items()}
 
-    def shared(self, a: str, b: str) -> int:
-        """At how many sightings both cameras saw the board."""
+    def common_count(self, a: str, b: str) -> int:
+        """The number of sightings by both cameras."""
         return len(self._views[a].keys() & self._views[b].keys())
 
     @property
     def count(self) -> int:
-        """BoardSightings at which two cameras or more saw the board."""
-        seen = [index for own in self._views.values() for index in own]
-        return int((np.unique(seen, return_counts=True)[1] >= 2).sum()) if seen else 0
+        """The number of sightings by two cameras or more."""
+        indices = [index for own in self._views.values() for index in own]
+        return int((np.unique(indices, return_counts=True)[1] >= 2).sum()) if indices else 0
 
     def largest_group(self, fewest: int) -> set[str]:
-        """The most cameras that hang together by pairs which share so many sightings."""
+        """The largest set of cameras connected by pairs with so many common sightings."""
         groups = [{name} for name in self._views]
         for a, b in self._places:
-            if self.shared(a, b) < fewest:
+            if self.common_count(a, b) < fewest:
                 continue
             joined = [group for group in groups if a in group or b in group]
             rest = [group for group in groups if a not in group and b not in group]
             groups = [*rest, set().union(*joined)]
         return max(groups, key=len)
 
-    def linked(self, fewest: int) -> bool:
-        """Whether all cameras hang together by such pairs."""
+    def all_connected(self, fewest: int) -> bool:
+        """Whether such pairs connect all cameras."""
         return len(self.largest_group(fewest)) == len(self._views)
 
-    def still(self, name: str, seen: BoardObservation) -> bool:
+    def still(self, name: str, observation: BoardObservation) -> bool:
         """Whether the board is at rest in this camera."""
-        return seen.motion_px <= self._params.most_motion * self._sizes_px[name][0]
+        return observation.motion_px <= self._params.most_motion * self._sizes_px[name][0]
 
     def still_px(self) -> dict[str, float]:
-        """By camera the motion [px per 1/30 s] under which the board is at rest."""
+        """By camera the largest motion of a board at rest [px per 1/30 s]."""
         return {name: self._params.most_motion * size[0] for name, size in self._sizes_px.items()}
 
     def offer(self, look: Look) -> bool:
-        """Keep the look if two cameras saw the board at rest where they did not before."""
-        still = sorted(name for name, seen in look.seen.items() if self.still(name, seen))
-        times = [look.seen[name].t_ns for name in still]
+        """Keep the look if two cameras show the board at rest at a new place."""
+        now = look.observations
+        still = sorted(name for name in now if self.still(name, now[name]))
+        times = [now[name].t_ns for name in still]
         if len(still) < 2 or max(times) - min(times) > self._params.most_spread_s * 1e9:
             return False
-        places = {name: self._place(name, look.seen[name].view) for name in still}
+        places = {name: self._place(name, now[name].view) for name in still}
         new = []
         for a, b in combinations(still, 2):
             at_a, at_b = places[a], places[b]
@@ -104,11 +105,11 @@ class BoardSightings:
             self._places[pair].append(place)
             self._new[pair] += 1
         for name in still:
-            self._views[name][look.index] = look.seen[name].view
+            self._views[name][look.index] = now[name].view
         return True
 
     def add_alone(self, name: str, view: BoardView) -> BoardView:
-        """A view of one camera that is of no moment; the view as it is kept, under an index of its own."""
+        """Add a view of a single camera, not simultaneous with others; returns it with an index of its own."""
         # even offsets: never next to another index
         index = view.index + 2 * (1 + sorted(self._sizes_px).index(name))
         alone = replace(view, index=index)
@@ -116,7 +117,7 @@ class BoardSightings:
         return alone
 
     def add(self, views: Views) -> None:
-        """Views of an earlier step, as they are."""
+        """Add views of an earlier step unchanged."""
         for name, own in views.items():
             if name in self._views:
                 self._views[name].update(own)
@@ -128,6 +129,6 @@ class BoardSightings:
                 )
 
     def _place(self, name: str, view: BoardView) -> Floats | None:
-        """(6,): `rough_place`, and the side: a board turned over tells more, wherever it is."""
+        """(6,): `rough_place`, and the side, as both sides of the board add information at one place."""
         place = rough_place(view, self._board_m, self._sizes_px[name])
         return None if place is None else np.append(place, float(view.back))

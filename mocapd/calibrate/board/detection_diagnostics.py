@@ -1,4 +1,4 @@
-"""Why no board is found in a picture: asked only of pictures without one, since it looks long."""
+"""Diagnoses why a picture shows no board. Slow, so only for pictures without one."""
 
 import re
 from collections import Counter
@@ -17,20 +17,20 @@ from mocapd.calibrate.board.board_detection import (
     DetectionFailure,
     Reason,
     as_grey,
-    flipped,
+    mirror_image,
 )
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, dictionaries, first_markers
 from mocapd.errors import ConfigError
 from mocapd.types import Bytes, Ints
 
-_DARK = 45  # grey value under which all but the lamps of a dark picture lie
-_SHARP = 0.12  # of the contrast per pixel, of pictures of 640 pixels across: what steep edges rise in focus
-_CONTRAST = 15.0  # grey values between light and dark, under which nothing tells focus
-_BEGINNING = 50  # markers of another dictionary that are looked for: boards begin with the first
-_SQUARES_PX = 480  # width of a picture in which plain chessboards are looked for, which takes long
-_CERTAIN = 3  # markers that are not there by chance
+_DARK = 45  # grey value; in a dark picture all but the lamps lie below it
+_SHARP = 0.12  # rise of edges in focus, of the contrast per pixel, of pictures of 640 pixels across
+_CONTRAST = 15.0  # grey values between light and dark; with less, the focus cannot be judged
+_BEGINNING = 50  # markers of another dictionary to search for: boards begin with the first
+_SQUARES_PX = 480  # width of a picture in a search for plain chessboards, which is slow
+_CERTAIN = 3  # markers; fewer may be chance
 
-# what to do about each; of recordings
+# remedies; for recordings
 FIX: Mapping[Reason, str] = {
     Reason.TOO_DARK: "add light, or lengthen the exposure",
     Reason.BLURRED: "focus the camera, hold the board still",
@@ -44,18 +44,18 @@ FIX: Mapping[Reason, str] = {
 }
 
 
-# Reasons that name what is seen instead of the board: one picture with them says more than many without a board.
+# Reasons that name another object in the picture: one such picture says more than many without a board.
 TELLING = frozenset(
     {Reason.OTHER_SIZE, Reason.OTHER_DICTIONARY, Reason.OTHER_KIND, Reason.MIRRORED}
 )
 
 
 def most_telling(failures: Sequence[DetectionFailure]) -> DetectionFailure:
-    """The one of several pictures' failures to report: what was seen outranks that nothing was, then the commonest.
+    """The failure to report of several pictures: one that shows something outranks an empty one, then the commonest.
 
-    Of the failures of that reason the one with the most markers in sight, of these the first.
+    Of the failures with that reason the one with the most visible markers, of these the first.
     """
-    counts = Counter(one.reason for one in failures)
+    counts = Counter(failure.reason for failure in failures)
 
     def rank(one: DetectionFailure) -> tuple[int, int, int]:
         is_part = one.reason is Reason.FEW and one.markers >= _CERTAIN
@@ -66,7 +66,7 @@ def most_telling(failures: Sequence[DetectionFailure]) -> DetectionFailure:
 
 
 def diagnose_detection(detector: BoardDetector, pixels: Bytes, index: int = 0) -> DetectionFailure:
-    """The reason why `detector` finds no board in this picture, the likeliest first."""
+    """The likeliest reason why `detector` finds no board in this picture."""
     grey = detector.as_printed(pixels)
     lit = as_grey(pixels)
     if np.percentile(lit, 98) < _DARK:
@@ -81,8 +81,8 @@ def diagnose_detection(detector: BoardDetector, pixels: Bytes, index: int = 0) -
 
 
 def _is_blurred(lit: Bytes) -> bool:
-    """Whether the steepest edges of a picture are flat; a picture without contrast has no edges to tell by."""
-    smooth = cv2.GaussianBlur(reduced(lit, 640), (0, 0), 0.8).astype(np.float32)
+    """Whether the steepest edges of a picture are flat; False for a picture without contrast, which has no edges."""
+    smooth = cv2.GaussianBlur(downscale(lit, 640), (0, 0), 0.8).astype(np.float32)
     low, high = np.percentile(smooth, (1, 99))
     if high - low < _CONTRAST:
         return False
@@ -100,11 +100,11 @@ def _of_markers(detector: BoardDetector, grey: Bytes, index: int) -> DetectionFa
     elif _is_mirrored(detector, grey, len(ids)):
         return DetectionFailure(index, Reason.MIRRORED)
     if len(ids) >= _CERTAIN:
-        return _of_known_markers(spec, ids, grey, index)
+        return _of_own_markers(spec, ids, grey, index)
     swapped = BoardDetector(replace(spec, inverted=not spec.inverted))
     swapped_ids = swapped.markers(255 - grey)
     if len(swapped_ids) >= _CERTAIN:
-        failure = _of_known_markers(swapped.spec, swapped_ids, 255 - grey, index)
+        failure = _of_own_markers(swapped.spec, swapped_ids, 255 - grey, index)
         ink = "light on dark" if swapped.spec.inverted else "dark on light"
         return replace(failure, detail=f"{failure.detail}, printed {ink}")
     other = _other_dictionary(spec, grey, index) or _other_kind(spec, grey, index)
@@ -113,14 +113,14 @@ def _of_markers(detector: BoardDetector, grey: Bytes, index: int) -> DetectionFa
 
 def _is_mirrored(detector: BoardDetector, grey: Bytes, markers: int) -> bool:
     """Whether the mirror image shows the board, or twice as many of its dictionary's markers."""
-    mirrored = flipped(grey)
+    mirrored = mirror_image(grey)
     if detector.find(grey_of(detector.spec, mirrored)) is not None:
         return True
     return len(detector.markers(mirrored)) >= max(_CERTAIN, 2 * markers + 1)
 
 
-def _of_known_markers(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFailure:
-    """Markers of the right dictionary are in sight: those of a larger board, of another one, or too few."""
+def _of_own_markers(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFailure:
+    """For visible markers of the right dictionary: a larger board, another one, or too few markers."""
     on_board = spec.columns * spec.rows // 2
     foreign = ids[ids >= on_board]
     if len(foreign) > 1:  # a single one may be chance
@@ -135,14 +135,14 @@ def _few(spec: BoardSpec, ids: Ints, index: int) -> DetectionFailure:
 
 
 def _clearer_side(detector: BoardDetector, grey: Bytes, ids: Ints) -> tuple[Bytes, Ints]:
-    """The picture and its markers, or its mirror image and its where there are more: the back is seen."""
-    mirrored = flipped(grey)
+    """The picture and its markers, or its mirror image where that has more markers: a view of the back."""
+    mirrored = mirror_image(grey)
     others = detector.markers(mirrored)
     return (mirrored, others) if len(others) > len(ids) else (grey, ids)
 
 
 def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFailure:
-    """Known markers in sight and no corners: too few of them, or in other places than given."""
+    """For visible markers of the board without corners: too few of them, or another layout than given."""
     sizes = [
         (columns, rows)
         for columns in range(3, 16)
@@ -153,17 +153,17 @@ def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFai
         and rows == max(3, -(-2 * (int(ids[-1]) + 1) // columns))
     ]
     for columns, rows in sizes:
-        if _shows(_resized(spec, columns, rows), grey):
+        if _shows(_board_of_size(spec, columns, rows), grey):
             detail = f"it fits rows of {columns} squares, {spec.columns}x{spec.rows} was given"
             return DetectionFailure(index, Reason.OTHER_SIZE, detail, len(ids))
     return _few(spec, ids, index)
 
 
-def _resized(
+def _board_of_size(
     spec: BoardSpec, columns: int, rows: int, kind: BoardKind | None = None
 ) -> BoardSpec | None:
-    """The board with so many squares; None when there is none, as with more than its dictionary has
-    markers for."""
+    """The board with so many squares; None for an impossible one, such as with more squares than its dictionary
+    has markers for."""
     try:
         return replace(spec, columns=columns, rows=rows, kind=kind or spec.kind)
     except ConfigError:
@@ -177,24 +177,24 @@ def _shows(spec: BoardSpec | None, as_printed: Bytes) -> bool:
 
 
 def grey_of(spec: BoardSpec, as_printed: Bytes) -> Bytes:
-    """What `BoardDetector.as_printed` was made of."""
+    """The inverse of `BoardDetector.as_printed`."""
     return 255 - as_printed if spec.inverted else as_printed
 
 
 def _other_dictionary(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | None:
-    """The family of dictionaries with the most markers in sight, dark on light or light on dark."""
-    found = _most_markers(grey, _family(spec.dictionary))
-    if found is None:
+    """The family of dictionaries with the most visible markers, dark on light or light on dark."""
+    best = _most_markers(grey, _family(spec.dictionary))
+    if best is None:
         return None
-    count, name = found
+    count, name = best
     return DetectionFailure(index, Reason.OTHER_DICTIONARY, f"{count} markers of {name}", count)
 
 
 def _most_markers(grey: Bytes, left_out: str = "") -> tuple[int, str] | None:
-    """How many markers of the family of dictionaries that has the most, and its name; None for too few."""
+    """The number of markers, and the name, of the dictionary family with the most; None for too few."""
     names = [name for name in _families() if _family(name) != left_out]
-    known: Any = [first_markers(name, _BEGINNING) for name in names]
-    detector = cv2.aruco.ArucoDetector(known)
+    candidates: Any = [first_markers(name, _BEGINNING) for name in names]
+    detector = cv2.aruco.ArucoDetector(candidates)
     for picture in (grey, 255 - grey):
         which: Any = detector.detectMarkersMultiDict(picture)[3]
         if which is not None and len(which) >= _CERTAIN:
@@ -207,7 +207,7 @@ def _most_markers(grey: Bytes, left_out: str = "") -> tuple[int, str] | None:
 
 @cache
 def _families() -> tuple[str, ...]:
-    """The largest dictionary of each family: the others of it are its beginnings, or other spellings."""
+    """The largest dictionary of each family, which contains the others of it."""
     return tuple({_family(name): name for name in dictionaries()}.values())
 
 
@@ -217,9 +217,9 @@ def _family(name: str) -> str:
 
 def _other_kind(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | None:
     """A chessboard in place of the ChArUco board of so many squares."""
-    plain, small = replace(spec, two_sided=False), reduced(grey, _SQUARES_PX)
+    plain, small = replace(spec, two_sided=False), downscale(grey, _SQUARES_PX)
     for columns, rows in ((spec.columns, spec.rows), (spec.rows, spec.columns)):
-        if _shows_squares(_resized(plain, columns, rows, BoardKind.CHESSBOARD), small):
+        if _shows_squares(_board_of_size(plain, columns, rows, BoardKind.CHESSBOARD), small):
             detail = f"a plain chessboard of {columns}x{rows} squares, without markers"
             return DetectionFailure(index, Reason.OTHER_KIND, detail)
     return None
@@ -235,16 +235,16 @@ def _of_squares(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | 
     c, r = spec.columns, spec.rows
     others = [(r, c), (c + 1, r + 1), (c - 1, r - 1), (r + 1, c + 1), (r - 1, c - 1)]
     others += [(c + 1, r), (c, r + 1), (c - 1, r), (c, r - 1)]
-    small = reduced(grey, _SQUARES_PX)
+    small = downscale(grey, _SQUARES_PX)
     for columns, rows in dict.fromkeys(others):
-        if {columns, rows} != {c, r} and _shows_squares(_resized(spec, columns, rows), small):
+        if {columns, rows} != {c, r} and _shows_squares(_board_of_size(spec, columns, rows), small):
             detail = f"{columns}x{rows} squares are seen, {c}x{r} were given (squares, not corners)"
             return DetectionFailure(index, Reason.OTHER_SIZE, detail)
     return None
 
 
 def _shows_squares(spec: BoardSpec | None, as_printed: Bytes) -> bool:
-    """As `_shows`, of a chessboard; a look that takes a hundredth of the time comes first."""
+    """As `_shows`, for a chessboard; a quick test that takes a hundredth of the time comes first."""
     return (
         spec is not None
         and bool(cv2.checkChessboard(as_printed, spec.grid))
@@ -252,8 +252,8 @@ def _shows_squares(spec: BoardSpec | None, as_printed: Bytes) -> bool:
     )
 
 
-def reduced(picture: Bytes, width_px: int) -> Bytes:
-    """A picture of this width at most."""
+def downscale(picture: Bytes, width_px: int) -> Bytes:
+    """The picture, at most this wide."""
     height, width = picture.shape[:2]
     if width <= width_px:
         return picture

@@ -1,4 +1,4 @@
-"""How sharp a picture of a board is."""
+"""The sharpness of a picture of a board."""
 
 import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 

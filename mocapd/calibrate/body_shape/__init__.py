@@ -1,1 +1,1 @@
-"""The wearer's proportions, and whether their scale agrees with the extrinsics."""
+"""Measures the wearer's proportions, and compares their scale with the extrinsics."""

@@ -1,4 +1,4 @@
-"""The lengths of a body that people know of themselves."""
+"""Body lengths that a user can check with a tape measure."""
 
 from mocapd.body.shape import BodyShape, skeleton_of
 
@@ -8,14 +8,15 @@ def lengths_cm(shape: BodyShape) -> dict[str, float]:
     skeleton = skeleton_of(shape)
     at = {name: skeleton.rest_m[i] for i, name in enumerate(skeleton.names)}
 
-    def between(a: str, b: str) -> float:
+    def length_cm(a: str, b: str) -> float:
         return float(100.0 * sum((at[a] - at[b]) ** 2) ** 0.5)
 
-    upper, fore = between("leftUpperArm", "leftLowerArm"), between("leftLowerArm", "leftHand")
+    upper = length_cm("leftUpperArm", "leftLowerArm")
+    fore = length_cm("leftLowerArm", "leftHand")
     return {
-        "shoulder to shoulder": between("leftUpperArm", "rightUpperArm"),
+        "shoulder to shoulder": length_cm("leftUpperArm", "rightUpperArm"),
         "upper arm": upper,
         "forearm": fore,
         "arm to the wrist": upper + fore,
-        "hips to neck": between("hips", "neck"),
+        "hips to neck": length_cm("hips", "neck"),
     }

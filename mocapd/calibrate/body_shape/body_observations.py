@@ -1,4 +1,4 @@
-"""Which tracked observations the wearer's shape is measured from, and when there are enough of them."""
+"""Selects observations for measuring the wearer's shape, and decides when there are enough."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,8 +21,8 @@ _SIDES = [
 @dataclass(frozen=True, slots=True)
 class BodyObservationParams:
     """Enough are `good_s` of observations, one every `every_s`, with both elbows bent through `bend_rad`; or
-    `longest_good_s` of them without bends; `patience_s`: how long in all the wearer may not be
-    well seen."""
+    `longest_good_s` of them without bends; `patience_s`: timeout for the total time without good visibility of the
+    wearer."""
 
     good_s: float = 4.5
     every_s: float = 0.15
@@ -32,8 +32,8 @@ class BodyObservationParams:
 
 
 class BodyObservations:
-    """Takes what a tracker says, frame set by frame set. Keeps the pictures of one observation, `pictured`: of the last
-    that as many cameras took part in as in any, for a camera's frame may come too late."""
+    """Takes a tracker's results, frame set by frame set. Stores the pictures of one observation, `pictured`: the last
+    one with the largest number of cameras, as a camera's frame may come too late."""
 
     def __init__(
         self,
@@ -50,14 +50,14 @@ class BodyObservations:
         self._bends: list[Floats] = []
 
     def add(self, track: Track, frames: FrameSet) -> bool:
-        """Whether the body is well seen; not every frame that is becomes an observation."""
+        """Returns whether the body is well visible; only some such frames become observations."""
         body = track.body
         before, self._last = self._last, None
         if body.tracking is not Tracking.LIVE or body.confidence[_SIDES].mean() < _SURE:
             return False
         self._last = observe_body(track, frames, self._model, self._cameras, before)
         if self._last is None or before is None:
-            return False  # just found: not settled, and its velocity is not known
+            return False  # just found: the pose has not converged, and its velocity is unknown
         due_ns = (
             self.observations[-1].t_ns + nanoseconds(self._p.every_s) if self.observations else 0
         )
@@ -71,17 +71,17 @@ class BodyObservations:
 
     @property
     def good_s(self) -> float:
-        """Seconds that count."""
+        """Total time of the observations [s]."""
         return len(self.observations) * self._p.every_s
 
     @property
     def bent(self) -> bool:
-        """Whether both elbows were bent enough to tell where they are."""
+        """Whether both elbows bent enough to locate them."""
         return bool(self._bends) and bool((np.ptp(self._bends, axis=0) >= self._p.bend_rad).all())
 
     @property
     def share(self) -> float:
-        """Of what is wanted, 0..1; 1 when that is enough."""
+        """Progress towards enough observations, 0..1."""
         wanted_s = self._p.good_s if self.bent else self._p.longest_good_s
         return min(1.0, self.good_s / wanted_s)
 

@@ -1,4 +1,4 @@
-"""Whether the typed stature agrees with the scale of the extrinsics, and what is wrong when it does not."""
+"""Compares the typed stature with the scale of the extrinsics, and explains a difference."""
 
 from dataclasses import dataclass
 
@@ -11,16 +11,16 @@ from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit
 from mocapd.fit.motion_state import MotionState
 from mocapd.types import Floats
 
-TOLERATED = 0.06  # people of one stature differ by some 2 %, so that 6 % is none of them
-_ALIKE = 0.04  # two scales that differ by less say the same
+TOLERATED = 0.06  # people of one stature differ by some 2 %, so 6 % is an error
+_ALIKE = 0.04  # two scales that differ by less agree
 _NECK = INDEX["neck"]
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """The wearer as the cameras see them, against the mean body of the typed stature; 1 when they agree.
+    """The wearer in the pictures relative to the mean body of the typed stature; 1 when they agree.
 
-    bones: from widths and lengths; height: of the neck over the floor, NaN when the floor is not known.
+    bones: from widths and lengths; height: of the neck over the floor, NaN for an unknown floor.
     """
 
     bones: float
@@ -36,15 +36,15 @@ class ScaleTrouble:
 
 
 def scale_of(fit: ShapeFit, model: BodyModel, floor_known: bool) -> Scale:
-    """One common factor of all proportions: what is left of each is what people differ by."""
+    """One common factor of all proportions; the rest is variation between people."""
     information = fit.information + 1e-3 * np.eye(len(fit.factors))
     spread = np.diag(model.space.factor_sd**2) + np.linalg.inv(information)
     weight = np.linalg.inv(spread)
-    bones = float(weight.sum(axis=0) @ fit.seen / weight.sum())
+    bones = float(weight.sum(axis=0) @ fit.measured / weight.sum())
     height = float("nan")
     if floor_known:
-        seen_m = [_neck_m(fit.states[k], model) for k in fit.counted]
-        height = float(np.median(seen_m) / model.rest_m[_NECK, 1])
+        measured_m = [_neck_m(fit.states[k], model) for k in fit.counted]
+        height = float(np.median(measured_m) / model.rest_m[_NECK, 1])
     return Scale(bones, height)
 
 

@@ -1,9 +1,8 @@
-"""The wearer's proportions from a few seconds of movement, with the cameras known.
+"""The wearer's proportions from a few seconds of movement, with calibrated cameras.
 
-One Gauss-Newton over the body's shape and the pose of every observation, from the rows of the tracker's own
-alignment; the poses are eliminated from each step (Schur complement), so that what an observation says of
-lengths is only what no other pose explains. The tracker's own learning goes frame by frame and cannot
-take back what it took from a poor one.
+Gauss-Newton over the body's shape and the pose of every observation, with the residual rows of the tracker's own
+alignment. The Schur complement eliminates the poses from each step, so an observation constrains lengths only where no
+other pose explains it. The tracker itself learns frame by frame and cannot undo the influence of a poor frame.
 """
 
 from collections.abc import Sequence
@@ -36,24 +35,24 @@ _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
 
 @dataclass(frozen=True, slots=True)
 class ShapeParams:
-    """How the proportions are solved."""
+    """Parameters of the solver."""
 
     rounds: int = 8
     averaged: int = 4  # last rounds: steps end in the noise of whole pixels
     settling: int = 4  # iterations of every pose before the first round
-    radius_px: int = 7  # work px within which colours are looked for: the poses are known
-    loose_s: float = 0.1  # a pose is held to as loosely as a prediction over this time
+    radius_px: int = 7  # work px, search radius for colours: the poses are nearly right
+    loose_s: float = 0.1  # weight of a pose's prior, as of a prediction over this time
     joint_sd_rad: float = 0.5  # how far a pose may yield to a change of shape
-    least_match: float = 0.6  # of an observation that counts
-    tolerated_cost: float = 1.5  # and its cost, against that of the middle one
+    least_match: float = 0.6  # of an inlier observation
+    tolerated_cost: float = 1.5  # of an inlier, relative to the median cost
     fewest_observations: int = 6
-    # how many of them count in full against what is known of people: their errors are alike
+    # weight of all observations relative to the prior of people's shapes: their errors are correlated
     independent_observations: float = 32.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyObservation:
-    """The body as it was tracked at one instant, and what the cameras saw: views at work resolution."""
+    """The tracked body at one instant, and the evidence of the cameras: views at work resolution."""
 
     t_ns: int
     state: MotionState
@@ -62,12 +61,12 @@ class BodyObservation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShapeFit:
-    """factors (N,) of `body.shape`. seen (N,) and information (N,N): what the
-    pictures alone say, without what is known of people; match: share of the drawn shirt that they
-    confirm; states: every observation's pose in this shape; counted: which of them were believed."""
+    """factors (N,) of `body.shape`. measured (N,) and information (N,N): from the pictures alone, without the
+    prior of people's shapes; match: share of the drawn shirt that the pictures confirm; states: every observation's
+    pose in this shape; counted: indices of the inliers."""
 
     factors: Floats
-    seen: Floats
+    measured: Floats
     information: Floats
     match: float
     states: tuple[MotionState, ...]
@@ -81,7 +80,7 @@ def observe_body(
     cameras: Sequence[Camera],
     before: BodyObservation | None,
 ) -> BodyObservation | None:
-    """An observation of a tracked frame set; None when nothing was seen. before: the last one, for velocity."""
+    """An observation of a tracked frame set; None without evidence. before: the last one, for velocity."""
     body = track.body
     if body.pose is None or not track.evidence:
         return None
@@ -129,15 +128,15 @@ def fit_shape(
         for m in observations
     ]
     factors = np.median([state.factors for state in states], axis=0)
-    kept: list[Floats] = []
+    rounds: list[Floats] = []
     for i in range(p.rounds + 1):
         states = [replace(state, factors=factors) for state in states]
         rows = [
             [gatherer.gather(state, view) for view in m.views]
             for state, m in zip(states, observations, strict=True)
         ]
-        # before the first steps a wearer of odd proportions agrees with no picture well
-        counted = _counted(rows, p, p.least_match if i == p.rounds else 0.0)
+        # before the first steps a wearer of unusual proportions matches no picture well
+        counted = _inliers(rows, p, p.least_match if i == p.rounds else 0.0)
         evidence = _Evidence(rows, counted, model, p)
         if i == p.rounds:
             break
@@ -147,9 +146,9 @@ def fit_shape(
             for state, follow in zip(states, evidence.follows, strict=True)
         ]
         factors = np.clip(factors + step, _SMALLEST, _LARGEST)
-        kept.append(factors)
+        rounds.append(factors)
         if i == p.rounds - 1:
-            factors = np.mean(kept[-p.averaged :], axis=0)
+            factors = np.mean(rounds[-p.averaged :], axis=0)
     return ShapeFit(
         factors,
         factors + np.linalg.solve(evidence.H + 1e-3 * np.eye(model.n_shape), evidence.b),
@@ -160,11 +159,11 @@ def fit_shape(
     )
 
 
-_Follow = tuple[Floats, Floats]  # how a pose answers to a step of the shape, and its own step
+_Follow = tuple[Floats, Floats]  # derivative of a pose by the shape, and the pose's own step
 
 
 class _Evidence:
-    """What all observations together say of the shape: H (N,N), b (N,) without the poses."""
+    """Normal equations of the shape over all observations: H (N,N), b (N,), poses eliminated."""
 
     def __init__(
         self,
@@ -193,7 +192,7 @@ class _Evidence:
         self.H, self.b = self.H * gain, self.b * gain
 
     def step(self, factors: Floats) -> Floats:
-        """Towards what is seen and what people are like."""
+        """The Gauss-Newton step of evidence and prior."""
         prior = self._prior
         step: Floats = np.asarray(
             np.linalg.solve(self.H + np.diag(prior), self.b - prior * (factors - 1.0)),
@@ -209,8 +208,8 @@ def _follow_shape(
     return replace(state, root_m=root, local_xyzw=local)
 
 
-def _counted(rows: Sequence[Sequence[BodyRows]], p: ShapeParams, least_match: float) -> list[int]:
-    """The observations in which body and pictures agree. Raises InputError when they are too few."""
+def _inliers(rows: Sequence[Sequence[BodyRows]], p: ShapeParams, least_match: float) -> list[int]:
+    """The observations in which body and pictures agree. Raises InputError for too few."""
     costs = [_cost(observation) for observation in rows]
     tolerable = p.tolerated_cost * float(np.median(costs))
     counted = [
@@ -238,5 +237,5 @@ def _cost(observation: Sequence[BodyRows]) -> float:
 
 
 def _match(observation: Sequence[BodyRows]) -> float:
-    """Share of the drawn shirt that is confirmed, in the camera that confirms least."""
+    """The confirmed share of the drawn shirt, in the camera that confirms least."""
     return min(row.match for row in observation)

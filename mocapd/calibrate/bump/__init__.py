@@ -1,1 +1,1 @@
-"""Whether a camera was turned since it was calibrated."""
+"""Detects cameras that moved or changed places since the calibration."""

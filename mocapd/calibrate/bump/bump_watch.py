@@ -1,8 +1,8 @@
-"""Whether a camera was bumped: the room has moved in its pictures, all of it as by one turn, and stays so.
+"""Detects a bumped camera: the whole room moved in its pictures as by one rotation, and stays so.
 
-The wearer's body cannot tell: with two cameras, all that a turn does within the plane of both views
-is taken up by the body's place, and what a roll does too. The fixed points of the room are seen by
-each camera alone, with or without somebody there. See docs/decisions/calibration.md.
+The wearer's body cannot show that: with two cameras, the body's position absorbs a rotation within the plane
+of both views, and a roll, too. The room's fixed points show it in each camera alone, with or without a person in
+view. See docs/decisions/calibration.md.
 """
 
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ from mocapd.types import Bytes, Floats
 
 
 class Mounting(StrEnum):
-    """`unknown`: too little of the room is seen; `steady`; `bumped`: calibrate the room again; `swapped`: with another
-    camera, which `swapped_cameras` decides."""
+    """`unknown`: too little of the room is visible; `steady`; `bumped`: calibrate the room again; `swapped`: with another
+    camera, as `swapped_cameras` decides."""
 
     UNKNOWN = "unknown"
     STEADY = "steady"
@@ -28,18 +28,18 @@ class Mounting(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class BumpParams:
-    """When a turn counts."""
+    """Thresholds of a bump."""
 
     least_turn_deg: float = 0.4  # 2 cm at 3 m; that of a camera at rest is measured to 0.1
-    lasting_s: float = 1.5  # who leans against the table and goes is no bump
-    blind_s: float = 10.0  # without enough marks, the mounting is no longer known
-    renewed_s: float = 10.0  # how often a view in the present light replaces the latest one
+    lasting_s: float = 1.5  # debounce: leaning against the table is no bump
+    blind_s: float = 10.0  # without enough marks for so long, the mounting is unknown
+    renewed_s: float = 10.0  # interval at which a view in the present light replaces the latest one
 
 
 class BumpWatch:
-    """Watches one camera: give it a picture now and then, about once a second.
+    """Watches one camera; needs a picture about once a second.
 
-    The first pictures define where the camera belongs: make a new one when the room was calibrated again.
+    The first pictures define the camera's pose: make a new instance after calibrating the room again.
     """
 
     def __init__(self, memory: LandmarkMemory, params: BumpParams | None = None) -> None:
@@ -49,14 +49,14 @@ class BumpWatch:
         self._recognised_ns = 0
         self._seems = Mounting.UNKNOWN  # in the latest picture, and since when
         self._since_ns = 0
-        self._is_confirmed = False  # the first view has proved to be of the room
+        self._is_confirmed = False  # whether the first view has proved to be of the room
         self._is_blind = False
         self.mounting = Mounting.UNKNOWN
         self.turn_deg = 0.0  # from the first view to the latest recognised picture
         self.is_recognised = False  # the room, in the latest picture
 
     def look(self, t_ns: int, pixels: Bytes) -> Mounting:
-        """A picture (height,width,3) BGR, and when it was taken."""
+        """Take a picture (height,width,3) BGR and its time."""
         turned = self._memory.turn(pixels)
         self.is_recognised = turned is not None
         if turned is None:
@@ -70,8 +70,8 @@ class BumpWatch:
         return self.mounting
 
     def remember_unrecognised(self, t_ns: int, pixels: Bytes) -> None:
-        """Keep a picture that is surely this camera's for recognition in the present light, when it was not recognised for
-        long."""
+        """Add a picture that is certainly this camera's to the memory, for the present light, after a long time without
+        recognition."""
         if self._is_blind and t_ns - self._renewed_ns >= nanoseconds(self._p.renewed_s):
             self._renewed_ns = t_ns
             self._memory.add_unrecognised(pixels)
@@ -87,7 +87,7 @@ class BumpWatch:
             self.is_recognised = True
 
     def _judge(self, t_ns: int) -> None:
-        """What lasts long enough becomes the mounting."""
+        """Debounce: a state that lasts long enough becomes the mounting."""
         limit_deg = self._p.least_turn_deg
         if self.mounting is Mounting.BUMPED:
             limit_deg *= 0.5

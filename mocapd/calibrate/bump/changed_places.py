@@ -1,8 +1,8 @@
-"""Whether two cameras have changed places: the room's points, found in both pictures, fit the calibration only crosswise.
+"""Detects two cameras that changed places: the room's points in both pictures fit the calibration only crosswise.
 
-Silhouettes cannot tell: of a pair that stands symmetrically about the person they only mirror the body. A point of the
-room can: its two rays meet before both cameras and not under the floor, or they do not. Of a close pair that is turned
-towards each other they do either way, with distances mirrored about where the views cross: then nothing is told.
+Silhouettes cannot show it: in a pair that is symmetric about the person they only mirror the body. A point of the room
+can: its two rays either meet in front of both cameras and above the floor, or not. In a close pair of converging cameras
+they meet either way, with distances mirrored about the crossing of the views; then the result is `unknown`.
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from mocapd.types import Bytes, Camera, Floats
 
 
 class Places(StrEnum):
-    """`unknown`: too few points are seen by both."""
+    """`unknown`: too few points are visible in both."""
 
     UNKNOWN = "unknown"
     RIGHT = "right"
@@ -27,15 +27,15 @@ class Places(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class PlacesParams:
-    """When points decide."""
+    """Thresholds of the decision."""
 
-    alike: float = 0.8  # of the distance to the second best, a match's own: what occurs twice says nothing [Lowe 2004]
+    alike: float = 0.8  # ratio test: of the distance to the second best match [Lowe 2004]
     features: int = 1500
     off_deg: float = 0.3  # of a ray from the other's plane: two pixels
     between_m: tuple[float, float] = (0.4, 12.0)  # from each camera, where rays may meet
-    floor_m: float = -0.15  # below it nothing is
+    floor_m: float = -0.15  # no point lies lower
     least: int = 7  # points that fit one way: of a hundred false matches two or three do
-    times: float = 2.5  # so many times as many as fit the other way, and one more
+    times: float = 2.5  # least ratio of the points that fit one way and the other
 
 
 def places_of(
@@ -43,7 +43,7 @@ def places_of(
     pictures: tuple[Bytes, Bytes],
     params: PlacesParams | None = None,
 ) -> Places:
-    """Of two cameras and what they deliver (h,w,3) BGR, each of its camera's size."""
+    """Compares two cameras with their pictures (h,w,3) BGR, each of its camera's size."""
     p = params if params is not None else PlacesParams()
     features = room_features(pictures[0], p), room_features(pictures[1], p)
     return places_by_matches(cameras, matching_points(features, p), p)
@@ -52,7 +52,7 @@ def places_of(
 def places_by_matches(
     cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], params: PlacesParams
 ) -> Places:
-    """The same of matches (N,2) and (N,2) [px] that are known."""
+    """The same from given matches (N,2) and (N,2) [px]."""
     if len(px[0]) < params.least:
         return Places.UNKNOWN
 
@@ -71,7 +71,7 @@ def places_by_matches(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RoomFeatures:
-    """Of one picture: where features are (N,2) [px], and what describes them (N,128)."""
+    """Features of one picture: positions (N,2) [px] and descriptors (N,128)."""
 
     px: Floats
     described: Floats
@@ -79,19 +79,19 @@ class RoomFeatures:
 
 def room_features(picture: Bytes, params: PlacesParams) -> RoomFeatures:
     """Of a picture (h,w,3) BGR."""
-    found = cv2.SIFT.create(nfeatures=params.features)
-    # without a feature there is no description, whatever OpenCV's stubs say
-    points, described = found.detectAndCompute(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), None)
+    detector = cv2.SIFT.create(nfeatures=params.features)
+    # without a feature there are no descriptors, which OpenCV's stubs do not say
+    points, described = detector.detectAndCompute(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), None)
     rows: Any = described
     if rows is None:
         rows = np.empty((0, 128), np.float32)
-    return RoomFeatures(np.array([one.pt for one in points]).reshape(-1, 2), rows)
+    return RoomFeatures(np.array([point.pt for point in points]).reshape(-1, 2), rows)
 
 
 def matching_points(
     features: tuple[RoomFeatures, RoomFeatures], params: PlacesParams
 ) -> tuple[Floats, Floats]:
-    """Places (N,2) [px] of what looks alike in both pictures, and in each like nothing else."""
+    """Positions (N,2) [px] of unambiguous matches between both pictures."""
     a, b = features
     if min(len(a.px), len(b.px)) < 2:
         return np.empty((0, 2)), np.empty((0, 2))
@@ -110,11 +110,11 @@ def matching_points(
     return a.px[[i for i, _ in pairs]], b.px[[j for _, j in pairs]]
 
 
-def _sure(found: Sequence[Sequence[cv2.DMatch]], params: PlacesParams) -> list[cv2.DMatch]:
-    """Of the two best matches of each feature, the first where it is clearly better."""
+def _sure(pairs: Sequence[Sequence[cv2.DMatch]], params: PlacesParams) -> list[cv2.DMatch]:
+    """Of the two best matches of each feature, the first where it is clearly better (ratio test)."""
     return [
         pair[0]
-        for pair in found
+        for pair in pairs
         if len(pair) == 2 and pair[0].distance < params.alike * pair[1].distance
     ]
 
@@ -122,14 +122,14 @@ def _sure(found: Sequence[Sequence[cv2.DMatch]], params: PlacesParams) -> list[c
 def fitting_points(
     cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], params: PlacesParams
 ) -> int:
-    """How many matches (N,2) and (N,2) [px] of two cameras lie before both."""
+    """The number of matches (N,2) and (N,2) [px] in front of both cameras."""
     (first, second), (here, there) = cameras, px
     a, b = rays(first, here)[1], rays(second, there)[1]
     apart = centre(second) - centre(first)
     normal = np.cross(np.broadcast_to(apart, a.shape), a)
     length = np.linalg.norm(normal, axis=1)
     off = np.abs(np.einsum("ni,ni->n", normal, b)) / np.maximum(length, 1e-9)
-    # distances along both rays where they pass nearest
+    # distances along both rays at their closest approach
     cosine = np.einsum("ni,ni->n", a, b)
     along_a, along_b = a @ apart, b @ apart
     sine2 = np.maximum(1.0 - cosine**2, 1e-9)

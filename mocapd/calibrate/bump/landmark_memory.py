@@ -1,7 +1,7 @@
-"""What one camera remembers of its room, as landmarks: enough to recognise the room and to measure how the camera turned.
+"""A camera's memory of its room as landmarks, for recognising the room and measuring the camera's rotation.
 
-It keeps the first view and the latest one, each with the camera's turn since the first. Views of earlier runs, and of
-times when the first views were not recognised (other light), have no turn: they only say whose room a picture shows.
+It has the first view and the latest one, each with the camera's rotation since the first. Views of earlier runs, and of
+times without recognition (other light), have no rotation: they only identify the room in a picture.
 """
 
 from collections.abc import Sequence
@@ -11,16 +11,16 @@ from mocapd.calibrate.bump.landmarks import Landmarks, find_landmarks, measure_t
 from mocapd.geometry import rotations
 from mocapd.types import Bytes, Camera, Floats
 
-_LEAST_MARKS = 20  # of a view that is kept
+_LEAST_MARKS = 20  # of a view worth remembering
 # Marks that agree, and their share. In the same room the share is 0.3 and more, also with a person in front; in another
-# camera's pictures of it 0.06 at most (measured on the simulated rooms). Somebody near hides most of the room.
+# camera's pictures of it 0.06 at most (measured on the simulated rooms). A person nearby hides most of the room.
 _LEAST_AGREE, _LEAST_SHARE = 10, 0.2
 _TIMES = 2.0  # the share of another camera's room, over that of the own one
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _TurnedView:
-    """Marks, and how far the camera was turned when they were found (4,)."""
+    """Marks, and the camera's rotation at that time (4,)."""
 
     marks: Landmarks
     turned_xyzw: Floats
@@ -37,8 +37,8 @@ class LandmarkMemory:
 
     @property
     def views(self) -> list[Landmarks]:
-        """All that is remembered, the earliest first; at most four once this run has one of its own."""
-        return [*self._other[:1], *(one.marks for one in self._turned), *self._other[1:]]
+        """All views, the earliest first; at most four once this run has one of its own."""
+        return [*self._other[:1], *(view.marks for view in self._turned), *self._other[1:]]
 
     @property
     def has_begun(self) -> bool:
@@ -46,15 +46,15 @@ class LandmarkMemory:
         return bool(self._turned)
 
     def turn(self, pixels: Bytes) -> Floats | None:
-        """(4,) xyzw from the first view to the picture, by the first view that is recognised; None: none is."""
+        """(4,) xyzw from the first view to the picture, by the first recognised view; None without recognition."""
         for view in self._turned:
-            seen = measure_turn(view.marks, pixels, self.camera)
-            if seen.agree >= max(_LEAST_AGREE, _LEAST_SHARE * len(view.marks.places)):
-                return rotations.multiply(rotations.exp(seen.turn_rad), view.turned_xyzw)
+            turn = measure_turn(view.marks, pixels, self.camera)
+            if turn.agree >= max(_LEAST_AGREE, _LEAST_SHARE * len(view.marks.places)):
+                return rotations.multiply(rotations.exp(turn.turn_rad), view.turned_xyzw)
         return None
 
     def likeness(self, pixels: Bytes) -> float:
-        """The share of a view's marks that the picture shows again, of the view with most; 0 when they are too few."""
+        """The largest share of a view's marks that the picture shows again; 0 for too few marks."""
         best = 0.0
         for marks in self.views:
             agree = measure_turn(marks, pixels, self.camera).agree
@@ -63,7 +63,7 @@ class LandmarkMemory:
         return best
 
     def begin(self, pixels: Bytes) -> bool:
-        """Take the picture as this run's first view; whether it shows enough."""
+        """Take the picture as this run's first view; returns whether it shows enough."""
         marks = find_landmarks(pixels, self.camera)
         if len(marks.places) < _LEAST_MARKS:
             return False
@@ -72,13 +72,13 @@ class LandmarkMemory:
         return True
 
     def renew(self, pixels: Bytes, turned_xyzw: Floats) -> None:
-        """Take the picture as the latest view beside the first: light changes."""
+        """Take the picture as the latest view, in addition to the first: light changes."""
         marks = find_landmarks(pixels, self.camera)
         if len(marks.places) >= _LEAST_MARKS:
             self._turned = [self._turned[0], _TurnedView(marks, turned_xyzw)]
 
     def add_unrecognised(self, pixels: Bytes) -> None:
-        """Remember a view that is surely this camera's and is not like the others."""
+        """Remember a view that is certainly this camera's and differs from the others."""
         marks = find_landmarks(pixels, self.camera)
         if len(marks.places) >= _LEAST_MARKS:
             self._other = [*self._other[:1], marks]

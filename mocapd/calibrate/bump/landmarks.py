@@ -1,8 +1,8 @@
-"""Fixed points of the room in one camera's pictures, and the turn of the camera that moved them.
+"""Fixed points of the room in one camera's pictures, and the camera rotation that moved them.
 
-Corners of a small picture (Shi and Tomasi 1994) are followed to a later one (pyramidal Lucas-Kanade, there and
-back). What moved with a person goes every way; what the turn of the camera moved agrees on one
-rotation, found by trying pairs of points and solved from all that agree with the best (Kabsch).
+Corners of a small picture (Shi and Tomasi 1994) are tracked to a later one (pyramidal Lucas-Kanade, forward and
+backward). Points on a person move in all directions; points that a camera rotation moved agree on that rotation. RANSAC
+over pairs of points finds it, and Kabsch's method solves it from all inliers.
 """
 
 from collections import Counter
@@ -21,9 +21,9 @@ from mocapd.types import Bytes, Camera, Floats, Singles
 _WIDTH_PX = 160  # of the small pictures: a turn of one degree is over two of their pixels
 _APART_PX, _QUALITY = 6.0, 0.02
 _CELL_PX, _IN_A_CELL = 40, 8
-_SHADE_PX, _NOISE = 6.0, 4.0  # contrast is evened out over so much; noise is not brought up to it
+_SHADE_PX, _NOISE = 6.0, 4.0  # radius of the local contrast normalisation, and its noise floor
 _WINDOW_PX, _LEVELS = 11, 3
-_BACK_PX = 0.5  # a mark that is not found back is not the same
+_BACK_PX = 0.5  # largest forward-backward error
 _AGREE_PX = 0.7
 _TRIES, _ROUNDS = 64, 3
 
@@ -39,31 +39,31 @@ class Landmarks:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraTurn:
-    """How the camera turned since the marks were made: rotation vector (3,) [rad], from rays before to
-    rays now; `agree` of the marks were moved so."""
+    """The camera's rotation since the marks were made: rotation vector (3,) [rad], from rays before to
+    rays now; `agree`: the number of inliers."""
 
     turn_rad: Floats
     agree: int
 
 
 def find_landmarks(pixels: Bytes, camera: Camera) -> Landmarks:
-    """The marks of a picture (height,width,3) BGR; there may be none."""
+    """The marks of a picture (height,width,3) BGR, perhaps none."""
     picture = _small(pixels)
-    # None when there is none, whatever OpenCV's stubs say
-    found: Any = cv2.goodFeaturesToTrack(picture, 0, _QUALITY, _APART_PX, blockSize=5)
-    places = np.asarray([] if found is None else found, dtype=np.float32).reshape(-1, 2)
+    # None for no corner, which OpenCV's stubs do not say
+    corners: Any = cv2.goodFeaturesToTrack(picture, 0, _QUALITY, _APART_PX, blockSize=5)
+    places = np.asarray([] if corners is None else corners, dtype=np.float32).reshape(-1, 2)
     places = _spread(places)
     return Landmarks(picture, places, _rays(places, camera))
 
 
 def landmarks_at(picture: Bytes, places: Singles, camera: Camera) -> Landmarks:
-    """Marks as they were found before, kept without their rays."""
+    """Marks from stored positions, which lack the rays."""
     return Landmarks(picture, places, _rays(places, camera))
 
 
 def measure_turn(marks: Landmarks, pixels: Bytes, camera: Camera) -> CameraTurn:
-    """How far the camera is turned in a later picture. None is a turn as likely as another one that
-    twice as many marks say."""
+    """The camera's rotation in a later picture. No rotation wins over another one unless twice as many marks
+    support that."""
     before, now = _track(marks, _small(pixels), camera)
     focal_px = float(camera.K[0, 0]) * _WIDTH_PX / camera.size_px[0]
     limit = _AGREE_PX / focal_px
@@ -83,18 +83,18 @@ def measure_turn(marks: Landmarks, pixels: Bytes, camera: Camera) -> CameraTurn:
 
 
 def _spread(places: Singles) -> Singles:
-    """The first of each cell: somebody in a gaudy shirt must not bear all the marks."""
-    kept, held = [], Counter[tuple[int, int]]()
+    """The first mark of each cell: a person in a gaudy shirt must not have all the marks."""
+    spread, held = [], Counter[tuple[int, int]]()
     for place in places:
         cell = (int(place[0]) // _CELL_PX, int(place[1]) // _CELL_PX)
         held[cell] += 1
         if held[cell] <= _IN_A_CELL:
-            kept.append(place)
-    return np.asarray(kept, dtype=np.float32).reshape(-1, 2)
+            spread.append(place)
+    return np.asarray(spread, dtype=np.float32).reshape(-1, 2)
 
 
 def _small(pixels: Bytes) -> Bytes:
-    """A small grey picture in which light and shade are evened out."""
+    """A small grey picture with normalised local contrast."""
     h, w = pixels.shape[:2]
     small = cv2.resize(pixels, (_WIDTH_PX, h * _WIDTH_PX // w), interpolation=cv2.INTER_AREA)
     grey = cv2.GaussianBlur(cv2.cvtColor(small, cv2.COLOR_BGR2GRAY).astype(np.float32), (0, 0), 0.8)
@@ -104,22 +104,22 @@ def _small(pixels: Bytes) -> Bytes:
 
 
 def _track(marks: Landmarks, picture: Bytes, camera: Camera) -> tuple[Floats, Floats]:
-    """Rays (M,3) of the marks that are found in a small picture, before and now."""
+    """Rays (M,3) of the tracked marks, before and now."""
     if len(marks.places) == 0 or picture.shape != marks.picture.shape:
         return np.empty((0, 3)), np.empty((0, 3))
-    there, found = _flow(marks.picture, picture, marks.places)
+    there, is_tracked = _flow(marks.picture, picture, marks.places)
     back, again = _flow(picture, marks.picture, there)
-    same = found & again & (np.abs(back - marks.places).max(axis=1) < _BACK_PX)
+    same = is_tracked & again & (np.abs(back - marks.places).max(axis=1) < _BACK_PX)
     return marks.rays[same], _rays(there[same], camera)
 
 
 def _flow(a: Bytes, b: Bytes, places: Singles) -> tuple[Singles, NDArray[np.bool_]]:
-    """Where places (N,2) of picture a are in picture b, and which of them were found."""
-    there, found, _ = cv2.calcOpticalFlowPyrLK(
+    """Positions in picture b of places (N,2) of picture a, and which of them were tracked."""
+    there, is_tracked, _ = cv2.calcOpticalFlowPyrLK(
         a, b, places, np.empty_like(places),
         winSize=(_WINDOW_PX, _WINDOW_PX), maxLevel=_LEVELS, minEigThreshold=1e-3,
     )  # fmt: skip
-    return np.asarray(there, dtype=np.float32), np.asarray(found).ravel() > 0
+    return np.asarray(there, dtype=np.float32), np.asarray(is_tracked).ravel() > 0
 
 
 def _rays(places: Singles, camera: Camera) -> Floats:
@@ -132,14 +132,14 @@ def _rays(places: Singles, camera: Camera) -> Floats:
 
 
 def _agreeing(R: Floats, before: Floats, now: Floats, limit: float) -> NDArray[np.bool_]:
-    """Which rays each rotation (...,3,3) takes to where they are now: (...,M)."""
+    """Inliers of each rotation (...,3,3) among the rays: (...,M)."""
     missed = np.einsum("...ij,mj->...mi", R, before) - now
     out: NDArray[np.bool_] = (missed**2).sum(axis=-1) < limit**2
     return out
 
 
 def _best_rotation(before: Floats, now: Floats, limit: float) -> tuple[Floats, NDArray[np.bool_]]:
-    """Of rotations that each take one pair of rays along, the one that most rays agree with."""
+    """RANSAC: of rotations that each fit one pair of rays, the one with the most inliers."""
     first, second = np.random.default_rng(0).integers(0, len(before), (2, _TRIES))
     F, G = _triad(before[first], before[second]), _triad(now[first], now[second])
     R = G @ np.swapaxes(F, 1, 2)

@@ -1,12 +1,12 @@
-"""Which cameras show what another one should: the one place where this is decided, from three kinds of evidence.
+"""Decides which cameras show another one's view. All such decisions are here, from three kinds of evidence.
 
-- Points of the room that two cameras both see contradict the calibration as it is, and fit it with the cameras exchanged
+- Points of the room in both pictures contradict the calibration, and fit it with the cameras exchanged
   (`changed_places.py`): from the first pictures on, without any memory.
-- A camera shows the room that another one remembers (`landmark_memory.py`): also where the two have nothing in view
-  together. Of different cameras each must show the other's; of identical ones, which are easily confused, one is enough.
-- The views of people say so (`consistency/`): where the room says nothing.
+- A camera shows the room that another one remembers (`landmark_memory.py`): also where the two have no common view.
+  Of different cameras each must show the other's room; of identical ones, which are easily confused, one is enough.
+- The views of people (`consistency/`) fit: where the room gives no evidence.
 
-Of a pair the latest evidence counts, and points of the room against what people say.
+The latest evidence of a pair counts, and points of the room outweigh people.
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -17,17 +17,17 @@ from mocapd.calibrate.bump.changed_places import Places, PlacesParams, places_of
 from mocapd.clock import nanoseconds
 from mocapd.types import Camera, Frame
 
-_AGAIN_S = 10.0  # from one look at a pair to the next: it takes a fifth of a second
-_LOOKS = 6  # at a pair whose points say nothing: it has too little in view together
+_AGAIN_S = 10.0  # between two comparisons of a pair: each takes a fifth of a second
+_LOOKS = 6  # at a pair without matching points: it has too little common view
 
 
 @dataclass(slots=True, eq=False)
 class _Pair:
-    """What is known of two cameras; looks: at their common points; next_ns: when they are due again."""
+    """State of two cameras; looks: comparisons of their points; next_ns: time of the next one."""
 
     cameras: tuple[Camera, Camera]
     places: Places = Places.UNKNOWN
-    is_by_people: bool = False  # that they have changed places
+    is_by_people: bool = False  # evidence of people that they changed places
     looks: int = 0
     next_ns: int = 0
     names: tuple[str, str] = field(init=False)
@@ -42,19 +42,19 @@ class _Pair:
 
 
 class SwappedCameras:
-    """Collects the evidence, and says which cameras are swapped. One thread gives evidence; any may ask."""
+    """Collects the evidence, and decides which cameras are swapped. One thread gives evidence; any may query."""
 
     def __init__(self, cameras: Sequence[Camera], params: PlacesParams | None = None) -> None:
         self._params = params
         self._pairs = [_Pair(pair) for pair in combinations(cameras, 2)]
         self._shows: dict[str, str] = {}  # by camera, the other one whose room it shows
-        self._sure: frozenset[str] = frozenset()  # of these one side is enough
+        self._sure: frozenset[str] = frozenset()  # cameras for which one side is enough
         self._mixed: frozenset[str] = (
             frozenset()
         )  # more than two that are exchanged among each other
 
     def misplaced_with(self, camera: str) -> str | None:
-        """The camera whose calibration fits what this one shows, by points or people: what it remembers is of the wrong
+        """The camera whose calibration fits this one's pictures, by points or people: its memory is of the wrong
         place."""
         for pair in self._pairs:
             if pair.places is Places.CHANGED and camera in pair.names:
@@ -62,7 +62,7 @@ class SwappedCameras:
         return None
 
     def partner(self, camera: str) -> str | None:
-        """The camera whose view this one shows; None when it shows its own, as far as is known."""
+        """The camera whose view this one shows; None when it shows its own, or without evidence."""
         misplaced_with = self.misplaced_with(camera)
         if misplaced_with is not None:
             return misplaced_with
@@ -72,12 +72,12 @@ class SwappedCameras:
         return None
 
     def is_swapped(self, camera: str) -> bool:
-        """Whether it shows what another camera should, known or not which."""
+        """Whether it shows the view of another camera, identified or not."""
         return camera in self._mixed or self.partner(camera) is not None
 
     def shows_room_of(self, camera: str, other: str | None, is_sure: bool = False) -> None:
-        """Evidence of memory: a camera shows the room that another one remembers; None: it does not. is_sure: whatever the
-        other one shows."""
+        """Evidence of memory: a camera shows the room that another one remembers; None: it does not. is_sure: regardless
+        of the other camera's view."""
         if other is None:
             self._shows.pop(camera, None)
             self._sure -= {camera}
@@ -86,7 +86,7 @@ class SwappedCameras:
             self._sure = self._sure | {camera} if is_sure else self._sure - {camera}
 
     def examine_again(self, camera: str) -> None:
-        """It was plugged in anew and is known to be in its place: earlier evidence of points and people is void."""
+        """Reset the evidence of points and people, after the user plugged the camera in again at its place."""
         for pair in self._pairs:
             if camera in pair.names and pair.places is Places.CHANGED:
                 pair.places, pair.is_by_people = Places.UNKNOWN, False
@@ -114,4 +114,4 @@ class SwappedCameras:
                 pair.places = Places.CHANGED
             elif pair.is_by_people:
                 pair.places, pair.is_by_people = Places.UNKNOWN, False
-        self._mixed = frozenset(name for one in groups if len(one) > 2 for name in one)
+        self._mixed = frozenset(name for group in groups if len(group) > 2 for name in group)

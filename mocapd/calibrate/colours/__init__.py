@@ -1,1 +1,1 @@
-"""The shirt's colours in the place's own light: strokes proposed, checked and solved."""
+"""The shirt's colours in the light of the place: proposes and checks strokes, and solves the light."""

@@ -1,4 +1,4 @@
-"""What strokes in the present light give: the colours of the wearer's own shirt."""
+"""Solves the colours of the wearer's own shirt from strokes in the present light."""
 
 from collections.abc import Mapping
 
@@ -13,9 +13,9 @@ def personal_colour_model(
 ) -> ColourModel:
     """The colours of the wearer's own shirt, from stroked pictures in any light.
 
-    Each picture is brought to the light of `model` by its own W first, so that the new model and the
-    old W belong together: a dye that differs from the standard stays as a difference, the light does
-    not. Raises ConfigError that names each colour with too few strokes in all pictures together.
+    W first maps each picture to the light of `model`, so that the new model fits the old W: a difference of
+    the dye from the standard remains, the light does not. Raises ConfigError that names each colour with too
+    few strokes in all pictures together.
     """
     W = white_balances(pictures, model)
     return fit_colour_model(

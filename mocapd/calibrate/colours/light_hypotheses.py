@@ -1,8 +1,8 @@
-"""White balances that a lamp, the sky and a camera's own correction may leave, before anything is known.
+"""White balances of plausible lights and camera corrections, to try before the light is estimated.
 
-Each hypothesis is diagonal: the colour of a light, undone channel by channel (von Kries). Lights are
+Each hypothesis is diagonal: the inverse of a light's colour, channel by channel (von Kries). Lights are
 black bodies (lamps, sun and sky lie near their locus) and the same with the green or magenta tint of
-discharge lamps and LEDs; a camera that corrects for its light only moves along the same locus.
+discharge lamps and LEDs; a camera's partial correction of its light moves along the same locus.
 """
 
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class LightHypothesis:
 
 
 def light_hypotheses(pixels: Bytes) -> tuple[LightHypothesis, ...]:
-    """All lights to try on a picture (h,w,3) BGR: the locus with its tints, and what the picture is on average.
+    """All lights to try on a picture (h,w,3) BGR: the locus with its tints, and averages of the picture.
 
     Grey world: the mean of a room is grey [Buchsbaum 1980]; shades of grey: so is its Minkowski mean
     of order 6 [Finlayson & Trezzi 2004].
@@ -44,9 +44,9 @@ def light_hypotheses(pixels: Bytes) -> tuple[LightHypothesis, ...]:
         for mired in MIREDS
     }
     flat = pixels.reshape(-1, 3)[:, ::-1] / 255.0
-    gains["grey world"] = _balanced(1.0 / np.maximum(flat.mean(axis=0), 1e-3))
+    gains["grey world"] = _unit_gain(1.0 / np.maximum(flat.mean(axis=0), 1e-3))
     shades = np.mean(flat**_MINKOWSKI, axis=0) ** (1.0 / _MINKOWSKI)
-    gains["shades of grey"] = _balanced(1.0 / np.maximum(shades, 1e-3))
+    gains["shades of grey"] = _unit_gain(1.0 / np.maximum(shades, 1e-3))
     return tuple(
         LightHypothesis(f"{name}, brightness x{level:g}", np.diag(gain * level))
         for name, gain in gains.items()
@@ -92,11 +92,11 @@ def _linear_srgb(uv: Floats) -> Floats:
 
 
 def _undone(rgb: Floats) -> Floats:
-    return _balanced(rgb ** (-1.0 / _GAMMA))
+    return _unit_gain(rgb ** (-1.0 / _GAMMA))
 
 
-def _balanced(gain: Floats) -> Floats:
-    """The same ratios with geometric mean 1: hue apart from brightness."""
+def _unit_gain(gain: Floats) -> Floats:
+    """The same ratios with geometric mean 1, which separates hue from brightness."""
     balanced: Floats = gain / np.exp(np.log(gain).mean())
     return balanced
 

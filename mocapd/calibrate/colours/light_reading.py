@@ -1,10 +1,9 @@
-"""A frozen picture read without any knowledge of the light: which light, and how the wearer stands in it.
+"""Reads a frozen picture without a known light: estimates the light and the wearer's pose.
 
-Every light hypothesis is asked where it sees a shirt (histogram search on colour ids); the most
-promising are followed: the pose database names the pose, the body is fitted, the white balance is
-solved from the patches as the fitted body shows them, and again until it settles. The reading under
-which body and picture agree best wins. With a known rig the cameras are then fitted together, each
-in its own light.
+A histogram search on colour ids finds shirt candidates under every light hypothesis. The reader refines the
+best ones: the pose database gives the pose, the fitter aligns the body, and the patches of the fitted body give
+the white balance, repeated until convergence. The reading with the best agreement of body and picture wins.
+With a calibrated rig the cameras are then fitted together, each in its own light.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -30,10 +29,10 @@ from mocapd.tracking.cues.shirt import shirt_search as detection
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.types import Bytes, Camera
 
-MEAN_STATURE_M = 1.72  # a picture from one camera does not tell size from distance
-_FOLLOWED = 16  # candidates that are followed
-_FINALISTS = 4  # of which so many are followed to the end
-_ALIKE = 0.15  # |W - W'|_F under which two candidates about one place are one
+MEAN_STATURE_M = 1.72  # one camera cannot distinguish size from distance
+_FOLLOWED = 16  # candidates to refine
+_FINALISTS = 4  # candidates to refine until convergence
+_ALIKE = 0.15  # |W - W'|_F under which two candidates at one place are equal
 _ALIKE_PX = 24  # work px
 _FIRST_TURNS = 2
 _LAST_TURNS = 8  # of the arm search, so that all of its library is tried
@@ -53,11 +52,11 @@ MapCameras = Callable[
 
 
 def _quiet(_: float) -> None:
-    """Nobody watches."""
+    """No progress report."""
 
 
 class LightReader:
-    """Reads frozen pictures of the cameras of one session; keeps buffers, remembers nothing."""
+    """Reads frozen pictures of the cameras of one session; has buffers, but no state between calls."""
 
     def __init__(
         self,
@@ -73,27 +72,27 @@ class LightReader:
         self._segmenters = self._refinement.segmenters
 
     def drawing(self, index: int) -> IdMapRenderer:
-        """What draws a reading's body into camera `index`."""
+        """The renderer of a reading's body in camera `index`."""
         return self._refinement.drawing(index)
 
     def read(
         self, index: int, pixels: Bytes, progress: Callable[[float], None] = _quiet
     ) -> Reading:
-        """Camera `index`'s picture (H,W,3) BGR in the light that explains it best. Raises InputError.
+        """Camera `index`'s picture (H,W,3) BGR in the light with the best agreement. Raises InputError.
 
-        Different cameras may be read by different threads at once. progress: of this camera, 0..1.
+        Several threads may read different cameras at once. progress: of this camera, 0..1.
         """
         segmenter, camera = self._segmenters[index], self._cameras[index]
         _check_size(pixels, camera)
         segmenter.reset()
         segmenter.look(pixels)
         readings = []
-        for i, (name, found) in enumerate(self._candidates(segmenter)):
+        for i, (name, candidate) in enumerate(self._candidates(segmenter)):
             progress(i / (_FOLLOWED + _FINALISTS))
-            fit = self._detected(index, found)
+            fit = self._fit_from_database(index, candidate)
             if fit is None:
                 continue
-            start = fresh(found.W)
+            start = fresh(candidate.W)
             reading = self._refinement.follow(index, name, fit, start, range(_FIRST_TURNS))
             if reading is not None and reading.colours >= self._params.accept_colours:
                 readings.append(reading)
@@ -118,30 +117,30 @@ class LightReader:
         progress: Callable[[float], None] = _quiet,
         map_cameras: MapCameras = map,
     ) -> dict[int, Reading]:
-        """Pictures of one moment by camera index, in cameras whose places are known. Raises InputError
-        when no camera shows a shirt; a camera that shows none is left out.
+        """Simultaneous pictures by camera index, of cameras with known extrinsics. Raises InputError
+        when no camera shows a shirt; the result lacks cameras without one.
 
-        A camera keeps its own reading where it agrees better than the common body. progress: 0..1.
+        A camera keeps its own reading where that agrees better than the common body. progress: 0..1.
         """
         shares = dict.fromkeys(pictures, 0.0)
 
         def read(index: int) -> Reading | InputError:
-            def told(share: float) -> None:
+            def report(share: float) -> None:
                 shares[index] = share
                 progress(_ALONE * sum(shares.values()) / len(shares))
 
             try:
-                return self.read(index, pictures[index], told)
+                return self.read(index, pictures[index], report)
             except InputError as error:
                 return error
 
         own: dict[int, Reading] = {}
         troubles = []
-        for index, one in zip(pictures, map_cameras(read, pictures), strict=True):
-            if isinstance(one, Reading):
-                own[index] = one
+        for index, result in zip(pictures, map_cameras(read, pictures), strict=True):
+            if isinstance(result, Reading):
+                own[index] = result
             else:
-                troubles.append(one)
+                troubles.append(result)
         if troubles and not own:
             raise troubles[0]
         progress(_ALONE)
@@ -150,24 +149,26 @@ class LightReader:
     # --- stages ---
 
     def _candidates(self, segmenter: CameraSegmenter) -> list[tuple[str, ShirtCandidate]]:
-        """The most even places over all lights, no two alike, best first."""
-        found: list[tuple[str, ShirtCandidate]] = []
+        """The most even candidates over all lights, without duplicates, best first."""
+        candidates: list[tuple[str, ShirtCandidate]] = []
         for light in light_hypotheses(segmenter.picture):
             segmenter.memory.references = (light.W,)
-            seen = segmenter.find(detection.WINDOWS)
-            if seen is not None:
-                found.append((light.name, seen))
-        found.sort(key=lambda f: -f[1].evenness)
-        kept: list[tuple[str, ShirtCandidate]] = []
-        for name, seen in found:
-            if len(kept) < _FOLLOWED and not any(_alike(seen, other) for _, other in kept):
-                kept.append((name, seen))
-        return kept
+            candidate = segmenter.find(detection.WINDOWS)
+            if candidate is not None:
+                candidates.append((light.name, candidate))
+        candidates.sort(key=lambda f: -f[1].evenness)
+        distinct: list[tuple[str, ShirtCandidate]] = []
+        for name, candidate in candidates:
+            if len(distinct) < _FOLLOWED and not any(
+                _alike(candidate, other) for _, other in distinct
+            ):
+                distinct.append((name, candidate))
+        return distinct
 
-    def _detected(self, index: int, found: ShirtCandidate) -> Fit | None:
-        """The body as the pose database has it, fitted to the ids of the search."""
+    def _fit_from_database(self, index: int, candidate: ShirtCandidate) -> Fit | None:
+        """The pose from the database, fitted to the ids of the search."""
         p, segmenter = self._params, self._segmenters[index]
-        segmenter.memory.references = (found.W,)
+        segmenter.memory.references = (candidate.W,)
         sighting = detection.sight(index, segmenter, self._database, p.neighbours)
         if sighting is None:
             return None
@@ -180,14 +181,14 @@ class LightReader:
             initial_information(model.space),
             model.n_pose,
         )
-        seen = sighting.found
-        unknown = np.full(seen.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8)
-        view = View(index, seen.roi, seen.ids, unknown, 0.0)
+        candidate = sighting.found
+        unknown = np.full(candidate.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8)
+        view = View(index, candidate.roi, candidate.ids, unknown, 0.0)
         asked = [_arms_out(state) for state in states]
         return detection.best_fit(self._refinement.fitter, states + asked, [view])
 
     def _common(self, own: Mapping[int, Reading]) -> dict[int, Reading]:
-        """One body fitted to all cameras, started from what each saw alone."""
+        """One body fitted to all cameras, started from each camera's own reading."""
         best: list[Reading] = []
         lights = {
             i: tuple(
@@ -201,7 +202,7 @@ class LightReader:
             for index, reading in own.items():
                 memory = self._segmenters[index].memory
                 memory.appearance = reading.appearance
-                # a camera that misread its light tries them all on the other's body
+                # a camera with a wrong light tries all of them on the other camera's body
                 memory.references = lights[index]
             fit, light = start.fit, start.light
             most, idle = 0.0, 0
@@ -212,9 +213,9 @@ class LightReader:
                 for index in own:
                     self._segmenters[index].memory.references = ()
                 fit = self._refinement.fit(fit.state, views, turn)
-                seen = (fit.explained, confirmed_colours(fit))
+                agreement = (fit.explained, confirmed_colours(fit))
                 readings = [
-                    Reading(light, fit, v, self._segmenters[v.index].memory.appearance, *seen)
+                    Reading(light, fit, v, self._segmenters[v.index].memory.appearance, *agreement)
                     for v in views
                 ]
                 idle = 0 if readings[0].score > most else idle + 1
@@ -222,7 +223,7 @@ class LightReader:
                 if not best or most > best[0].score:
                     best = readings
                 for view in views:
-                    self._refinement.relight(view.index, fit.state, view)
+                    self._refinement.update_light(view.index, fit.state, view)
         out = dict(own)
         for reading in best:
             alone = own[reading.view.index]
@@ -233,7 +234,7 @@ class LightReader:
 
 
 def _arms_out(state: MotionState) -> MotionState:
-    """The same with both arms held out, as the user is asked to stand."""
+    """The same with both arms held out, as the instructions ask."""
     local = state.local_xyzw.copy()
     local[_ARM_JOINTS] = IDENTITY_XYZW
     return replace(state, local_xyzw=local)

@@ -1,7 +1,7 @@
-"""Pose and light of a body in still pictures, each refined by the other, in the work pictures of one rig.
+"""Alternates between pose and light of a body in still pictures, at the work resolution of one rig.
 
-The fitted body tells which patch a pixel is of, so the white balance is solved from the patches; in
-that light the picture is classified anew and the body fitted again, until neither gains.
+The fitted body gives the patch of each pixel, so the patches give the white balance. The picture is
+classified again under that light and the body fitted again, until neither improves.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ from mocapd.shirt.segmentation.shirt_appearance import ShirtAppearance
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.types import Camera
 
-# turns in a row that may be no better: with one camera pose and light then drift off together
+# rounds in a row without improvement: with one camera, pose and light then drift together
 IDLE_TURNS = 2
 LOOSE_S = 0.1
 _NEAREST_M = 0.8  # a webcam sees no whole upper body nearer than that
@@ -35,9 +35,9 @@ _NEAREST_M = 0.8  # a webcam sees no whole upper body nearer than that
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reading:
-    """A picture read in one light: the fitted body, the view it was fitted to, what the colours look
-    like, the agreement 0..1 (the share of the rendered shirt that the picture confirms, less what it
-    shows elsewhere), and how many of the colours are confirmed."""
+    """A picture read in one light: the fitted body, its view, the appearance of the colours, the agreement 0..1
+    (the share of the rendered shirt that the picture confirms, minus shirt colours elsewhere), and the number of
+    confirmed colours."""
 
     light: str
     fit: Fit
@@ -48,13 +48,13 @@ class Reading:
 
     @property
     def score(self) -> float:
-        """What readings are compared by. From every side a whole shirt shows all of its colours, so
-        that few of them, however well they agree, are a bookshelf."""
+        """The score for comparing readings. A whole shirt shows all of its colours from every side, so a
+        candidate with few of them, however good the agreement, is a bookshelf."""
         return self.agreement * self.colours / COLOURS
 
 
 class LightRefinement:
-    """The body's fitter and a segmenter a camera; keeps buffers, and each segmenter its light."""
+    """The body's fitter and one segmenter a camera; has buffers, and each segmenter has its light."""
 
     def __init__(
         self, cameras: Sequence[Camera], model: ColourModel, stature_m: float, params: ShirtParams
@@ -71,13 +71,13 @@ class LightRefinement:
         self._precision = shade_precision(model)
 
     def drawing(self, index: int) -> IdMapRenderer:
-        """What draws a reading's body into camera `index`."""
+        """The renderer of a reading's body in camera `index`."""
         return self.fitter.drawings[index]
 
     def follow(
         self, index: int, light: str, fit: Fit, start: ShirtAppearance, turns: range
     ) -> Reading | None:
-        """Pose, light, pose, light, ...; the best on the way, None when the body leaves the picture."""
+        """Alternates pose and light; returns the best result, None when the body leaves the picture."""
         self.segmenters[index].memory.appearance = start
         best: Reading | None = None
         idle = 0
@@ -92,16 +92,16 @@ class LightRefinement:
             reading = Reading(light, fit, view, appearance, agreement, colours)
             if best is None or reading.score > best.score:
                 best, idle = reading, 0
-            self.relight(index, fit.state, view)
+            self.update_light(index, fit.state, view)
         return best
 
     def fit(self, state: MotionState, views: list[View], turn: int) -> Fit:
-        """The body in these views, its arms searched for."""
+        """The body in these views, with a search for its arms."""
         fit = self.fitter.fit(state, views, LOOSE_S, self._params.fit.iterations)
         return self._arms.improve(fit, views, LOOSE_S, turn)[0]
 
     def classify(self, index: int, fit: Fit) -> View | None:
-        """The picture's colours, given where the body was; None when it left the picture."""
+        """The picture's colours, given the last pose; None when the body left the picture."""
         drawing = self.drawing(index)
         if to_camera(drawing.camera, fit.state.root_m)[2] < _NEAREST_M:
             return None
@@ -109,15 +109,15 @@ class LightRefinement:
         if roi is None:
             return None
         predicted = drawing.render(fit.state, 0.0, roi)
-        # no arm is called uncertain: looked for far away, its colours are found in the room, whose
-        # background is not known yet
+        # no arm counts as uncertain: a wide search would find its colours in the room, whose background
+        # is not yet available
         ids, pixel_weight = self.segmenters[index].classify(
             predicted, drawing, roi, np.empty(0, np.int64), may_relight=True
         )
         return View(index, roi, ids.copy(), pixel_weight.copy(), 0.0)
 
-    def relight(self, index: int, state: MotionState, view: View) -> None:
-        """Read on in the light that the fitted body's patches ask for."""
+    def update_light(self, index: int, state: MotionState, view: View) -> None:
+        """Set the white balance that the fitted body's patches give."""
         segmenter = self.segmenters[index]
         rendered = self.drawing(index).render(state, 0.0, view.roi)
         sums = np.zeros((10, 4))
@@ -131,7 +131,7 @@ class LightRefinement:
         segmenter.memory.appearance = ShirtAppearance(W, sums)
 
     def judged_alone(self, reading: Reading) -> Reading:
-        """The reading judged by its own camera alone."""
+        """The reading with the agreement of its own camera alone."""
         view = reading.view
         rendered = self.drawing(view.index).render(reading.fit.state, view.dt_s, view.roi)
         n = np.bincount(rendered.ravel(), minlength=COLOURS + 1)[1:]

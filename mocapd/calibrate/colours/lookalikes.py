@@ -1,4 +1,4 @@
-"""Things in the background that have the shirt's colours: outlined and named, so that they can be moved."""
+"""Finds things in the background with the shirt's colours, and names them so that the user can move them."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 from mocapd.types import Bytes, Floats, Ints
 
-LEAST_SHARE = 0.001  # of the picture: about half of a cuff that is seen from across a room
+LEAST_SHARE = 0.001  # of the picture: about half of a cuff across a room
 _BODY_MARGIN_SHARE = 0.04  # of the picture's width around the wearer: hands, edges, motion
 _CORNER_SHARE = 0.01  # of a polygon's circumference: how far it may be from the outline
 _EVERYWHERE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
@@ -35,7 +35,7 @@ def lookalikes(
     least_share: float = LEAST_SHARE,
     params: SegmentationParams | None = None,
 ) -> tuple[Lookalike, ...]:
-    """Regions of a picture (H,W,3) BGR beside the wearer that read as a colour of the shirt, largest first.
+    """Regions of a picture (H,W,3) BGR outside the wearer that read as a colour of the shirt, largest first.
 
     shirt (H,W): non-zero on the shirt: `Proposal.shirt`, or `hull_of` strokes that cover it. W (3,3): white balance.
     Colours are read as by `colours_alone`.
@@ -45,18 +45,18 @@ def lookalikes(
     size = 2 * round(_BODY_MARGIN_SHARE * w) + 1
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     ids[cv2.dilate((shirt > 0).astype(np.uint8), near) > 0] = 0
-    found = [
+    regions = [
         Lookalike(colour, model.names[colour - 1], polygon, area)
         for colour in range(1, len(model.names) + 1)
         for polygon, area in _regions((ids == colour).astype(np.uint8), least_share * h * w)
     ]
-    return tuple(sorted(found, key=lambda one: -one.area_px))
+    return tuple(sorted(regions, key=lambda lookalike: -lookalike.area_px))
 
 
 def colours_alone(
     pixels: Bytes, model: ColourModel, W: Floats, params: SegmentationParams | None = None
 ) -> Bytes:
-    """Colour ids (H,W) of a picture (H,W,3) BGR as the tracker reads them without a pose (paper section
+    """Colour ids (H,W) of a picture (H,W,3) BGR as the tracker classifies them without a pose (paper section
     5.2, step 1)."""
     p = params if params is not None else SegmentationParams()
     tables = ColourTables()
@@ -68,7 +68,7 @@ def colours_alone(
 
 
 def hull_of(strokes: Bytes) -> Bytes:
-    """The convex hull (H,W) 0/1 of strokes (H,W): what lies between them is the wearer too."""
+    """The convex hull (H,W) 0/1 of strokes (H,W): the area between strokes belongs to the wearer."""
     points = cv2.findNonZero((strokes > 0).astype(np.uint8))
     mask = np.zeros(strokes.shape, np.uint8)
     if points is not None:
@@ -76,12 +76,14 @@ def hull_of(strokes: Bytes) -> Bytes:
     return mask
 
 
-def described(found: tuple[Lookalike, ...], size_px: tuple[int, int]) -> str:
-    """One sentence for the user, or "" when there is nothing to say; size_px: width and height."""
-    if not found:
+def lookalike_warning(regions: tuple[Lookalike, ...], size_px: tuple[int, int]) -> str:
+    """One sentence for the user, or "" for no lookalikes; size_px: width and height."""
+    if not regions:
         return ""
-    places = [f"{one.name} ({_place(one.polygon_px, size_px)})" for one in found[:5]]
-    more = f" and {len(found) - 5} smaller ones" if len(found) > 5 else ""
+    places = [
+        f"{lookalike.name} ({_place(lookalike.polygon_px, size_px)})" for lookalike in regions[:5]
+    ]
+    more = f" and {len(regions) - 5} smaller ones" if len(regions) > 5 else ""
     return (
         f"these things behind you have the shirt's colours: {', '.join(places)}{more}"
         " -- cover them or turn the camera"

@@ -1,9 +1,9 @@
-"""Whether a user's strokes can be right: enough colours, and all of them explained by one light.
+"""Checks a user's strokes: enough colours, and one light that explains all of them.
 
-Each connected stroke is one witness. From every plausible light (`light_hypotheses`) a white balance
-is solved in which a witness counts the less the worse it agrees (iteratively reweighted least
-squares with the weights of [Geman & McClure 1987]); the light that most of the strokes agree on
-decides, and what disagrees with it was drawn on another patch.
+Each connected stroke is one witness. From every plausible light (`light_hypotheses`) iteratively reweighted
+least squares with the weights of [Geman & McClure 1987] solves a white balance, in which a witness weighs less
+the worse it agrees. The light with the most agreement wins, and strokes that disagree with it were drawn on
+another patch.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balan
 from mocapd.types import Bytes, Floats, Ints
 
 LEAST_COLOURS = 5  # W has nine unknowns, and shade hides one number of each colour's three
-LEAST_PX = 12  # of a stroke that is judged
+LEAST_PX = 12  # of a stroke to check
 _ROUNDS = 8
 _AGREES = 2.5  # standard deviations (hue first, see `shade_precision`) at which a witness counts a quarter
 _WRONG = 4.5  # standard deviations from where a stroke is called wrong
@@ -31,9 +31,9 @@ _MAJORITY = 0.6  # share of the witnesses that must agree on one light
 
 @dataclass(frozen=True, slots=True)
 class StrokeProblem:
-    """What is wrong with the strokes, of which colours (ids 1..10), where [px], and what to do.
+    """A problem of the strokes: its colours (ids 1..10), places [px], and remedy.
 
-    serious: W cannot be solved with it; otherwise the colour's other strokes outweigh the wrong one.
+    serious: it prevents solving W; otherwise the colour's other strokes outweigh the wrong one.
     """
 
     colours: tuple[int, ...]
@@ -54,9 +54,9 @@ class _Witnesses:
 
 
 def check_strokes(pixels: Bytes, strokes: Bytes, model: ColourModel) -> tuple[StrokeProblem, ...]:
-    """Problems of strokes (H,W) on a picture (H,W,3) BGR, none when they can be used."""
-    seen = _witnesses(pixels, strokes)
-    drawn = np.unique(seen.colour)
+    """Problems of strokes (H,W) on a picture (H,W,3) BGR, none for usable strokes."""
+    witnesses = _witnesses(pixels, strokes)
+    drawn = np.unique(witnesses.colour)
     if len(drawn) < LEAST_COLOURS:
         missing = [k for k in range(COLOURS) if k not in drawn]
         return (
@@ -64,22 +64,22 @@ def check_strokes(pixels: Bytes, strokes: Bytes, model: ColourModel) -> tuple[St
                 tuple(k + 1 for k in missing),
                 (),
                 f"only {len(drawn)} of {COLOURS} colours have strokes"
-                f" ({_listed(model, drawn.tolist()) or 'none'})",
-                f"draw on at least {LEAST_COLOURS - len(drawn)} more of: {_listed(model, missing)}",
+                f" ({_colour_list(model, drawn.tolist()) or 'none'})",
+                f"draw on at least {LEAST_COLOURS - len(drawn)} more of: {_colour_list(model, missing)}",
             ),
         )
-    distance = _consensus(pixels, seen, model)
-    agreeing = distance[np.arange(len(seen.colour)), seen.colour] < _WRONG
-    if seen.weight[agreeing].sum() < _MAJORITY * seen.weight.sum():
+    distance = _consensus(pixels, witnesses, model)
+    agreeing = distance[np.arange(len(witnesses.colour)), witnesses.colour] < _WRONG
+    if witnesses.weight[agreeing].sum() < _MAJORITY * witnesses.weight.sum():
         return (
             StrokeProblem(
                 tuple(int(k) + 1 for k in drawn),
                 (),
-                f"no light makes these strokes the shirt's colours ({_listed(model, drawn.tolist())})",
+                f"no light makes these strokes the shirt's colours ({_colour_list(model, drawn.tolist())})",
                 "erase them and draw each colour on its own patch, as the card of the shirt shows",
             ),
         )
-    return tuple(_misplaced(seen, distance, agreeing, model))
+    return tuple(_misplaced_strokes(witnesses, distance, agreeing, model))
 
 
 def require_good_strokes(pixels: Bytes, strokes: Bytes, model: ColourModel, where: str) -> None:
@@ -91,24 +91,27 @@ def require_good_strokes(pixels: Bytes, strokes: Bytes, model: ColourModel, wher
         )
 
 
-def _misplaced(
-    seen: _Witnesses, distance: Floats, agreeing: np.ndarray, model: ColourModel
+def _misplaced_strokes(
+    witnesses: _Witnesses, distance: Floats, agreeing: np.ndarray, model: ColourModel
 ) -> list[StrokeProblem]:
     problems = []
-    for k in np.unique(seen.colour[~agreeing]):
-        mine = np.flatnonzero(~agreeing & (seen.colour == k))
-        like = int(np.argmin(np.average(distance[mine], axis=0, weights=seen.weight[mine])))
+    for k in np.unique(witnesses.colour[~agreeing]):
+        mine = np.flatnonzero(~agreeing & (witnesses.colour == k))
+        like = int(np.argmin(np.average(distance[mine], axis=0, weights=witnesses.weight[mine])))
         name, other = model.names[k], model.names[like]
         looks = like != k and (distance[mine, like] < _BETTER * distance[mine, k]).all()
         problems.append(
             StrokeProblem(
                 (int(k) + 1, like + 1) if looks else (int(k) + 1,),
-                tuple((int(x), int(y)) for x, y in seen.at_px[mine]),
+                tuple((int(x), int(y)) for x, y in witnesses.at_px[mine]),
                 f"the stroke for {name} lies on what looks {other} in this light"
                 if looks
                 else f"the stroke for {name} lies on no colour of the shirt",
                 f"erase it and draw {name} on the {name} patch",
-                bool(2.0 * seen.weight[mine].sum() >= seen.weight[seen.colour == k].sum()),
+                bool(
+                    2.0 * witnesses.weight[mine].sum()
+                    >= witnesses.weight[witnesses.colour == k].sum()
+                ),
             )
         )
     return problems
@@ -123,7 +126,7 @@ def _witnesses(pixels: Bytes, strokes: Bytes) -> _Witnesses:
             if len(x) < LEAST_PX:
                 continue
             colours.append(k)
-            # the median is not moved by the ends that ran over the border
+            # the median ignores ends that cross the border
             means.append(np.median(pixels[y, x][:, ::-1], axis=0) / 255.0)
             middle = int(np.argmin((x - x.mean()) ** 2 + (y - y.mean()) ** 2))
             places.append((x[middle], y[middle]))
@@ -136,26 +139,26 @@ def _witnesses(pixels: Bytes, strokes: Bytes) -> _Witnesses:
     )
 
 
-def _consensus(pixels: Bytes, seen: _Witnesses, model: ColourModel) -> Floats:
-    """Distances (S,10) of the witnesses to every colour, under the W that most of them agree on."""
+def _consensus(pixels: Bytes, witnesses: _Witnesses, model: ColourModel) -> Floats:
+    """Distances (S,10) of the witnesses to every colour, under the W with the most agreement."""
     covariance = model.tolerating(_SHADING, _NOISE).tolerant_covariance
     whitening = np.linalg.inv(np.linalg.cholesky(covariance))
-    precision = shade_precision(model)[seen.colour]
+    precision = shade_precision(model)[witnesses.colour]
     best, most = np.eye(3), -1.0
-    rows = np.arange(len(seen.colour))
+    rows = np.arange(len(witnesses.colour))
     for light in light_hypotheses(pixels[::4, ::4]):
         W = light.W
         for _ in range(_ROUNDS):
-            off = _distances(W, seen.mean, model.mean, whitening)[rows, seen.colour]
-            trust = seen.weight / (1.0 + (off / _AGREES) ** 2) ** 2
+            off = _distances(W, witnesses.mean, model.mean, whitening)[rows, witnesses.colour]
+            trust = witnesses.weight / (1.0 + (off / _AGREES) ** 2) ** 2
             W = solve_white_balance(
-                seen.mean, model.mean[seen.colour], trust, light.W, _RIDGE, precision
+                witnesses.mean, model.mean[witnesses.colour], trust, light.W, _RIDGE, precision
             )
-        off = _distances(W, seen.mean, model.mean, whitening)[rows, seen.colour]
-        agreed = float((seen.weight / (1.0 + (off / _AGREES) ** 2)).sum())
+        off = _distances(W, witnesses.mean, model.mean, whitening)[rows, witnesses.colour]
+        agreed = float((witnesses.weight / (1.0 + (off / _AGREES) ** 2)).sum())
         if agreed > most and _plausible(W):
             best, most = W, agreed
-    return _distances(best, seen.mean, model.mean, whitening)
+    return _distances(best, witnesses.mean, model.mean, whitening)
 
 
 def _distances(W: Floats, image: Floats, mean: Floats, whitening: Floats) -> Floats:
@@ -166,11 +169,11 @@ def _distances(W: Floats, image: Floats, mean: Floats, whitening: Floats) -> Flo
 
 
 def _plausible(W: Floats) -> bool:
-    """Whether a light and a camera can do that: each channel mostly comes from its own."""
+    """Whether a light and a camera can produce W: each channel mostly comes from its own."""
     diagonal = np.diag(W)
-    aside = np.abs(W - np.diag(diagonal)).sum(axis=1)
-    return bool((diagonal > 0.2).all() and (diagonal < 6.0).all() and (aside < diagonal).all())
+    mixed = np.abs(W - np.diag(diagonal)).sum(axis=1)
+    return bool((diagonal > 0.2).all() and (diagonal < 6.0).all() and (mixed < diagonal).all())
 
 
-def _listed(model: ColourModel, colours: list[int]) -> str:
+def _colour_list(model: ColourModel, colours: list[int]) -> str:
     return ", ".join(model.names[k] for k in colours)

@@ -1,4 +1,4 @@
-"""Strokes proposed on a frozen picture: the patch interiors of the body as it was read."""
+"""Proposes strokes on a frozen picture: the patch interiors of the fitted body."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -45,8 +45,7 @@ def propose_strokes(
 ) -> Proposal:
     """Strokes for one picture (H,W,3) BGR of a person in the shirt.
 
-    camera: its intrinsics are used, its place is not; None: those of a usual webcam are assumed. Raises
-    InputError when no shirt is found under any light.
+    camera: only its intrinsics matter; None: those of a usual webcam. Raises InputError when no light shows a shirt.
     """
     h, w = pixels.shape[:2]
     if camera is None:
@@ -64,10 +63,10 @@ def propose_strokes_together(
     progress: Callable[[float], None] = lambda _: None,
     map_cameras: MapCameras = map,
 ) -> dict[str, Proposal]:
-    """The same for pictures of one moment by camera name, when the cameras' places are known too.
+    """The same for simultaneous pictures by camera name, with known extrinsics.
 
     progress: 0..1; map_cameras: `map`, or that of a pool of threads, one for each camera at best.
-    A camera in which nobody is found is left out. Raises InputError when that is all of them.
+    The result lacks cameras without a person. Raises InputError when that is all of them.
     """
     reader = LightReader(rig.cameras, model, database, stature_m)
     chosen = {i: pictures[name] for i, name in enumerate(rig.names) if name in pictures}
@@ -81,7 +80,7 @@ def propose_strokes_together(
 def interiors(rendered: Bytes, classified: Bytes) -> Bytes:
     """Strokes (h,w): where body and picture agree on a colour, off the borders of its patches.
 
-    rendered, classified (h,w) colour ids. A patch that the picture mostly denies gets none.
+    rendered, classified (h,w) colour ids. A patch gets none where the picture contradicts most of it.
     """
     out = np.zeros_like(rendered)
     cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
@@ -100,8 +99,8 @@ def interiors(rendered: Bytes, classified: Bytes) -> Bytes:
 
 
 def of_one_dye(strokes: Bytes, pixels: Bytes) -> Bytes:
-    """The strokes (H,W) without the pixels whose hue is not that of most of their part: a wall of nearly the
-    same colour beside a sleeve widens the colour's model until it finds sleeves everywhere.
+    """The strokes (H,W) without pixels whose hue differs from most of their part: a wall of nearly the same colour
+    next to a sleeve widens the colour's model until it matches sleeves everywhere.
 
     Shade keeps the hue, so r, g, b are compared as shares of their sum; pixels (H,W,3) BGR.
     """
@@ -114,8 +113,8 @@ def of_one_dye(strokes: Bytes, pixels: Bytes) -> Bytes:
             share = bgr / bgr.sum(axis=1, keepdims=True)
             apart = np.abs(share - np.median(share, axis=0))
             spread = np.maximum(_SPREAD_OF_MEDIAN * np.median(apart, axis=0), _LEAST_SPREAD)
-            kept = (apart < _FAR * spread).all(axis=1)
-            out[rows[kept], columns[kept]] = colour
+            of_dye = (apart < _FAR * spread).all(axis=1)
+            out[rows[of_dye], columns[of_dye]] = colour
     return out
 
 
@@ -125,18 +124,18 @@ def _proposal(
     drawing, view = reader.drawing(index), reading.view
     rendered = drawing.render(reading.fit.state, view.dt_s, view.roi)
     at = (view.roi[0] * drawing.image_scale, view.roi[1] * drawing.image_scale)
-    inside = _enlarged(interiors(rendered, view.ids), drawing.image_scale, at, pixels)
+    inside = _upscale(interiors(rendered, view.ids), drawing.image_scale, at, pixels)
     strokes = of_one_dye(inside, pixels)
     means, counts = stroke_means(pixels, strokes)
     W = solve_white_balance(means, model.mean, counts, precision=shade_precision(model))
     return Proposal(
         strokes, W, reading.agreement, reading.light,
-        _enlarged(rendered, drawing.image_scale, at, pixels),
+        _upscale(rendered, drawing.image_scale, at, pixels),
         tuple(int(k) + 1 for k in np.flatnonzero(counts)),
     )  # fmt: skip
 
 
-def _enlarged(ids: Bytes, image_scale: int, at: tuple[int, int], pixels: Bytes) -> Bytes:
+def _upscale(ids: Bytes, image_scale: int, at: tuple[int, int], pixels: Bytes) -> Bytes:
     """Ids of a region of the work picture (h,w) in the picture's own pixels (H,W)."""
     out = np.zeros(pixels.shape[:2], np.uint8)
     large = np.repeat(np.repeat(ids, image_scale, axis=0), image_scale, axis=1)

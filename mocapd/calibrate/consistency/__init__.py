@@ -1,1 +1,1 @@
-"""Whether what is given of cameras (places, lenses, times) agrees with what their pictures show."""
+"""Checks the description of cameras (extrinsics, intrinsics, times) against their pictures."""

@@ -1,7 +1,7 @@
-"""Shown the first pictures of some cameras, tells what does not agree with their calibration and their times.
+"""Checks the first pictures of cameras against their calibration and times, of recordings and live cameras alike.
 
-The same for recordings and for live cameras. What is kept is small: pictures of 320 px, 15 a second, while somebody
-moves. With one camera only what people look like in its pictures can be checked: whether they stand upright.
+Stores little: pictures of 320 px, 15 a second, during movement. With a single camera it can only check whether people
+stand upright.
 """
 
 from collections.abc import Sequence
@@ -27,15 +27,15 @@ from mocapd.calibrate.consistency.world_judge import judge_world, turned_views
 from mocapd.clock import seconds
 from mocapd.types import Bytes, Camera, Floats, Frame, Rig
 
-_EVERY_S = 1.0 / 15.0 - 0.005  # from one kept picture to the next
+_EVERY_S = 1.0 / 15.0 - 0.005  # between stored pictures
 _STRETCH_S = 2.0
 _STRETCHES = 5
-_PEOPLE = 2  # looked at in each stretch
+_PEOPLE = 2  # per stretch
 _MOVES = 0.7  # of the logarithm of change, above the quietest tenth of the pictures
 _ENOUGH_S = 12.0  # of motion
-_MOST_KEPT = 240  # pictures of a camera
+_MOST_PICTURES = 240  # pictures of a camera
 _BY_TIME = (Mistake.CONTRADICTION, Mistake.ZOOMED)
-# What a mistake that is not mended does to joints, at least, though views may still agree about them [m]
+# Least error of joints [m] that an uncorrected mistake causes, even where views agree about them
 _OFF_M = {
     Mistake.DELAY: 0.1,
     Mistake.EXCHANGED: 0.3,
@@ -51,8 +51,8 @@ _OFF_M = {
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """findings: what does not agree; off_m: by how much views contradict each other for good [m], 0 where they agree or
-    all is mended; looked: stretches of time in which people were seen by two cameras, or by the only one."""
+    """findings: the contradictions; off_m: how far views contradict each other without remedy [m], 0 where they agree or
+    all is corrected; looked: stretches of time with people in two cameras, or in the only one."""
 
     findings: tuple[CaptureFinding, ...] = ()
     off_m: float = 0.0
@@ -60,13 +60,15 @@ class CheckResult:
 
     @property
     def late_s(self) -> dict[str, float]:
-        """By camera, how much later its times are than given [s], of those that are surely wrong."""
-        return {one.cameras[0]: one.late_s for one in self.findings if one.is_mended}
+        """By camera, how much later its times are than given [s], for those that are certainly wrong."""
+        return {
+            finding.cameras[0]: finding.late_s for finding in self.findings if finding.is_mended
+        }
 
 
 @dataclass(slots=True, eq=False)
-class _Kept:
-    """Of one camera. newest: its newest whole picture, where whole ones come."""
+class _CameraBuffer:
+    """Pictures of one camera. newest: its newest whole picture, where whole ones come."""
 
     camera: Camera
     meter: MotionMeter = field(default_factory=MotionMeter)
@@ -83,129 +85,137 @@ class CaptureCheck:
     """Collects pictures and judges them; for one thread."""
 
     def __init__(self, rig: Rig, stature_m: float | None = None) -> None:
-        self._kept = {camera.name: _Kept(camera) for camera in rig.cameras}
+        self._buffers = {camera.name: _CameraBuffer(camera) for camera in rig.cameras}
         self._stature_m = stature_m
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the cameras that are checked."""
-        return tuple(self._kept)
+        """The names of the checked cameras."""
+        return tuple(self._buffers)
 
     def put(self, frame: Frame) -> None:
-        """A picture of a camera of the rig; one of another size than its calibration is left out."""
-        kept = self._kept.get(frame.camera)
-        if kept is not None and frame.pixels.shape[1::-1] == kept.camera.size_px:
-            kept.newest = frame.pixels
+        """Add a picture of a camera of the rig; ignores one of another size than its calibration."""
+        buffer = self._buffers.get(frame.camera)
+        if buffer is not None and frame.pixels.shape[1::-1] == buffer.camera.size_px:
+            buffer.newest = frame.pixels
             self.put_small(frame.camera, frame.t_ns, *shrink(frame.pixels))
 
     def put_whole(self, frame: Frame) -> None:
-        """A whole picture of now, beside the smaller ones: the room is looked at in the newest."""
-        kept = self._kept.get(frame.camera)
-        if kept is not None and frame.pixels.shape[1::-1] == kept.camera.size_px:
-            kept.newest = frame.pixels
+        """Add a whole picture of now, in addition to the smaller ones: the room's points come from the newest."""
+        buffer = self._buffers.get(frame.camera)
+        if buffer is not None and frame.pixels.shape[1::-1] == buffer.camera.size_px:
+            buffer.newest = frame.pixels
 
     def put_small(self, camera: str, t_ns: int, small: Bytes, smaller: float) -> None:
-        """The same of a picture that is smaller already, as by `shrink`."""
-        kept, t_s = self._kept[camera], seconds(t_ns)
-        kept.meter.put(t_s, small)
-        kept.frames += 1
-        kept.first_s = t_s if kept.frames == 1 else kept.first_s
-        kept.last_s = t_s
-        if kept.times_s and t_s - kept.times_s[-1] < _EVERY_S:
+        """The same for a picture that `shrink` already reduced."""
+        buffer, t_s = self._buffers[camera], seconds(t_ns)
+        buffer.meter.put(t_s, small)
+        buffer.frames += 1
+        buffer.first_s = t_s if buffer.frames == 1 else buffer.first_s
+        buffer.last_s = t_s
+        if buffer.times_s and t_s - buffer.times_s[-1] < _EVERY_S:
             return
-        kept.smaller = smaller
-        kept.times_s.append(t_s)
-        kept.pictures.append(small)
-        if len(kept.pictures) > _MOST_KEPT:
-            del kept.times_s[0], kept.pictures[0]
+        buffer.smaller = smaller
+        buffer.times_s.append(t_s)
+        buffer.pictures.append(small)
+        if len(buffer.pictures) > _MOST_PICTURES:
+            del buffer.times_s[0], buffer.pictures[0]
 
     @property
     def has_enough(self) -> bool:
-        """Whether more pictures would tell little more."""
-        there = [one for one in self._kept.values() if one.frames > 1]
+        """Whether more pictures would add little."""
+        there = [buffer for buffer in self._buffers.values() if buffer.frames > 1]
         if not there:
             return False
-        return min(_moving_s(one.meter) for one in there) >= _ENOUGH_S
+        return min(_moving_s(buffer.meter) for buffer in there) >= _ENOUGH_S
 
     def result(self) -> CheckResult:
-        """What is found in the pictures so far: takes a second or two."""
-        there = [one for one in self._kept.values() if len(one.pictures) > 10]
+        """The findings in the pictures so far: takes a second or two."""
+        there = [buffer for buffer in self._buffers.values() if len(buffer.pictures) > 10]
         if not there:
             return CheckResult()
-        cameras = [one.camera for one in there]
-        times = judge_times([_timing(one) for one in there])
+        cameras = [buffer.camera for buffer in there]
+        times = judge_times([_timing(buffer) for buffer in there])
         late = times.findings
-        late_s = {one.cameras[0]: one.late_s for one in late if one.is_mended}
-        stretches = self._stretches(there, [late_s.get(one.name, 0.0) for one in cameras])
+        late_s = {finding.cameras[0]: finding.late_s for finding in late if finding.is_mended}
+        stretches = self._stretches(there, [late_s.get(camera.name, 0.0) for camera in cameras])
         names = tuple(camera.name for camera in cameras)
         turned = turned_views(
             cameras,
-            [[view for one in stretches for view in one[i][:1]] for i in range(len(cameras))],
+            [
+                [view for stretch in stretches for view in stretch[i][:1]]
+                for i in range(len(cameras))
+            ],
         )
         if len(cameras) == 1:
             return CheckResult(
                 turned,
                 _OFF_M[Mistake.TURNED] if turned else 0.0,
-                sum(1 for one in stretches if one[0]),
+                sum(1 for stretch in stretches if stretch[0]),
             )
         verdict = judge(cameras, stretches, times.moves_alike)
-        pictures = [one.newest for one in there]
+        pictures = [buffer.newest for buffer in there]
         findings = with_the_room(cameras, pictures, verdict.findings)
         if not findings and (scaled := scaled_findings(cameras, stretches)):
             findings = with_the_room(cameras, pictures, scaled)
         if not findings and not all(times.moves_alike):
-            # cameras in their places that show another time
+            # cameras at their places with other times
             findings = tuple(
-                one for one in verdict.findings if one.mistake is Mistake.CONTRADICTION
+                finding for finding in verdict.findings if finding.mistake is Mistake.CONTRADICTION
             )
-        if any(not one.is_mended for one in late):
-            # views of different instants contradict each other for no other reason
-            findings = tuple(one for one in findings if one.mistake not in _BY_TIME)
+        if any(not finding.is_mended for finding in late):
+            # views at different instants contradict each other for that reason alone
+            findings = tuple(finding for finding in findings if finding.mistake not in _BY_TIME)
         if not findings:
             findings = judge_world(names, verdict.fits, self._stature_m)
         if turned and not any(
-            one.mistake in (Mistake.TURNED, Mistake.AXES, Mistake.INVERTED) for one in findings
+            finding.mistake in (Mistake.TURNED, Mistake.AXES, Mistake.INVERTED)
+            for finding in findings
         ):
             findings = (*turned, *findings)
         off_m = max(
-            (_OFF_M.get(one.mistake, 0.0) for one in (*late, *findings) if not one.is_mended),
+            (
+                _OFF_M.get(finding.mistake, 0.0)
+                for finding in (*late, *findings)
+                if not finding.is_mended
+            ),
             default=0.0,
         )
         return CheckResult(
             (*late, *findings), max(off_m, verdict.off_m if findings else 0.0), len(verdict.fits)
         )
 
-    def _stretches(self, there: Sequence[_Kept], late_s: Sequence[float]) -> list[Stretch]:
-        """The people in the stretches of time in which most moves, with the times that they should have."""
-        begin = max(one.times_s[0] + late for one, late in zip(there, late_s, strict=True))
-        end = min(one.times_s[-1] + late for one, late in zip(there, late_s, strict=True))
+    def _stretches(self, there: Sequence[_CameraBuffer], late_s: Sequence[float]) -> list[Stretch]:
+        """The people in the stretches of time with most motion, at corrected times."""
+        begin = max(buffer.times_s[0] + late for buffer, late in zip(there, late_s, strict=True))
+        end = min(buffer.times_s[-1] + late for buffer, late in zip(there, late_s, strict=True))
         count = max(1, int((end - begin) / _STRETCH_S))
         edges = end - _STRETCH_S * np.arange(count, -1, -1)
         moved = [
             sum(
-                _motion_between(one.meter, low - late, high - late)
-                for one, late in zip(there, late_s, strict=True)
+                _motion_between(buffer.meter, low - late, high - late)
+                for buffer, late in zip(there, late_s, strict=True)
             )
             for low, high in pairwise(edges)
         ]
         chosen = sorted(np.argsort(moved)[::-1][:_STRETCHES])
         finder = PersonFinder()
         works = [
-            WorkPictures(np.array(one.times_s), np.stack(one.pictures), one.smaller)
-            for one in there
+            WorkPictures(np.array(buffer.times_s), np.stack(buffer.pictures), buffer.smaller)
+            for buffer in there
         ]
-        rooms = [RoomsByLight(one) for one in works]
+        rooms = [RoomsByLight(work) for work in works]
         turns: list[Sequence[int]] = [range(4)] * len(there)
         out: list[Stretch] = []
         for k in chosen:
-            seen = []
+            people = []
             for i, (work, late) in enumerate(zip(works, late_s, strict=True)):
                 low, high = edges[k] - late, edges[k + 1] - late
                 views = _people(finder, work, rooms[i], (low, high), turns[i])
                 if views:
                     turns[i] = tuple({0, views[0].quarter_turns})
-                seen.append([replace(one, times_s=one.times_s + late) for one in views])
-            out.append(seen)
+                people.append([replace(view, times_s=view.times_s + late) for view in views])
+            out.append(people)
         return out
 
 
@@ -224,7 +234,7 @@ def _people(
 
 
 def _moving_s(meter: MotionMeter) -> float:
-    """For how long something moved."""
+    """Total time with motion."""
     signal = meter.signal()
     if len(signal.times_s) < 2:
         return 0.0
@@ -239,6 +249,6 @@ def _motion_between(meter: MotionMeter, low_s: float, high_s: float) -> float:
     return float(change.mean()) if len(change) else 0.0
 
 
-def _timing(kept: _Kept) -> CameraTiming:
-    period_s = (kept.last_s - kept.first_s) / max(kept.frames - 1, 1)
-    return CameraTiming(kept.camera.name, kept.meter.signal(), max(period_s, 1e-3))
+def _timing(buffer: _CameraBuffer) -> CameraTiming:
+    period_s = (buffer.last_s - buffer.first_s) / max(buffer.frames - 1, 1)
+    return CameraTiming(buffer.camera.name, buffer.meter.signal(), max(period_s, 1e-3))

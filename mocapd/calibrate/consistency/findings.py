@@ -1,11 +1,11 @@
-"""What does not agree between what is given of cameras and what their pictures show."""
+"""Contradictions between the description of cameras and their pictures."""
 
 from dataclasses import dataclass
 from enum import StrEnum
 
 
 class Mistake(StrEnum):
-    """What was probably done wrong."""
+    """The probable mistake."""
 
     DELAY = "delay"
     EXCHANGED = "exchanged"
@@ -15,13 +15,13 @@ class Mistake(StrEnum):
     INVERTED = "inverted"  # camera-to-world where world-to-camera is wanted
     AXES = "axes"
     UNIT = "unit"
-    CONTRADICTION = "contradiction"  # and no known mistake explains it
+    CONTRADICTION = "contradiction"  # unexplained by any hypothesis
 
 
 @dataclass(frozen=True, slots=True)
 class CaptureFinding:
-    """cameras: the names of those concerned, in the rig's order; what: the observation; fix: how to mend it. late_s: of a
-    delay, by how much the one camera's times are too early; 0 otherwise."""
+    """cameras: names of the affected ones, in the rig's order; what: the observation; fix: the remedy. late_s: of a delay,
+    by how much the one camera's times are too early; 0 otherwise."""
 
     mistake: Mistake
     cameras: tuple[str, ...]
@@ -34,5 +34,5 @@ class CaptureFinding:
 
     @property
     def is_mended(self) -> bool:
-        """Whether what was found can be used, so that nothing is wrong any more."""
+        """Whether the data are corrected, so that nothing is wrong any more."""
         return self.late_s != 0.0

@@ -1,4 +1,4 @@
-"""What may have been done wrong with cameras and their videos, each as the cameras and views that would mend it."""
+"""Hypotheses of mistakes with cameras and their videos, each with the cameras and views that would correct it."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ import numpy as np
 
 from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.person_views import PersonView
-from mocapd.calibrate.consistency.view_agreement import mirrored, upside_down, zoomed
+from mocapd.calibrate.consistency.view_agreement import mirror_view, upside_down, zoom_view
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Camera
 
@@ -26,15 +26,15 @@ _SHIFTS = (
 _MOST_PERMUTED = 4  # cameras, of which all orders are tried
 
 
-def unchanged(view: PersonView) -> PersonView:
-    """What is right needs no mending."""
+def identity_view(view: PersonView) -> PersonView:
+    """Identity: a correct view."""
     return view
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hypothesis:
-    """cameras, mends: by view, in the rig's order, what took its pictures, and what has to be done with them first;
-    affected: indexes of the views that this changes; what, fix: for people."""
+    """cameras, mends: by view, in the rig's order, the camera of its pictures and their correction; affected: indexes of
+    the views that this changes; what, fix: for the user."""
 
     mistake: Mistake | None
     cameras: tuple[Camera, ...]
@@ -45,26 +45,28 @@ class Hypothesis:
 
 
 def as_given(cameras: Sequence[Camera]) -> Hypothesis:
-    """Nothing is wrong."""
-    return Hypothesis(None, tuple(cameras), (unchanged,) * len(cameras), tuple(range(len(cameras))))
+    """No mistake."""
+    return Hypothesis(
+        None, tuple(cameras), (identity_view,) * len(cameras), tuple(range(len(cameras)))
+    )
 
 
 def hypotheses(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
-    """Mistakes that people make, the likelier first; zooms excepted."""
-    yield from _exchanged(cameras)
-    yield from _mirrored(cameras)
+    """Common mistakes, the likelier first, without zooms."""
+    yield from _exchanges(cameras)
+    yield from _mirrorings(cameras)
     yield from _upside_down(cameras)
     yield from _other_conventions(cameras)
 
 
 def zooms(cameras: Sequence[Camera], index: int) -> Iterator[Hypothesis]:
-    """One camera's pictures are a part of what was calibrated, about its principal point, or the other way round."""
+    """One camera's pictures are a cut-out of the calibrated ones, about its principal point, or the other way round."""
     camera = cameras[index]
     for factor in _ZOOMS:
         yield _zoom(cameras, index, factor, (camera.K[0, 2], camera.K[1, 2]))
 
 
-def shifted(cameras: Sequence[Camera], index: int, factor: float) -> Iterator[Hypothesis]:
+def shifted_zooms(cameras: Sequence[Camera], index: int, factor: float) -> Iterator[Hypothesis]:
     """The same zoom about other points, and slightly other zooms."""
     (w, h), cx, cy = cameras[index].size_px, cameras[index].K[0, 2], cameras[index].K[1, 2]
     for by in (0.94, 1.0, 1.06):
@@ -78,23 +80,23 @@ def shifted(cameras: Sequence[Camera], index: int, factor: float) -> Iterator[Hy
 def _zoom(
     cameras: Sequence[Camera], index: int, factor: float, about: tuple[float, float]
 ) -> Hypothesis:
-    mends: list[Mend] = [unchanged] * len(cameras)
-    mends[index] = partial(zoomed, middle_px=about, factor=1.0 / factor)
+    mends: list[Mend] = [identity_view] * len(cameras)
+    mends[index] = partial(zoom_view, middle_px=about, factor=1.0 / factor)
     name = cameras[index].name
-    seen = "larger" if factor > 1.0 else "smaller"
+    size_word = "larger" if factor > 1.0 else "smaller"
     return Hypothesis(
         Mistake.ZOOMED, tuple(cameras), tuple(mends), (index,),
-        f"what camera {name!r} shows is about {max(factor, 1 / factor):.1f} times {seen} than its focal length makes it",
+        f"what camera {name!r} shows is about {max(factor, 1 / factor):.1f} times {size_word} than its focal length makes it",
         "were its pictures cut, zoomed or letterboxed after it was calibrated? Record as then, or calibrate it again",
     )  # fmt: skip
 
 
-def _exchanged(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
+def _exchanges(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
     count, names = len(cameras), [camera.name for camera in cameras]
     orders = (
         permutations(range(count))
         if count <= _MOST_PERMUTED
-        else (_swapped(count, i, j) for i, j in combinations(range(count), 2))
+        else (_swap(count, i, j) for i, j in combinations(range(count), 2))
     )
     for order in orders:
         moved = tuple(i for i in range(count) if order[i] != i)
@@ -110,11 +112,11 @@ def _exchanged(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
             what = f"the pictures fit other cameras' places: {pairs}"
             fix = "give each camera its own video in rig.json"
         placed = tuple(cameras[k] for k in order)
-        yield Hypothesis(Mistake.EXCHANGED, placed, (unchanged,) * count, moved, what, fix)
+        yield Hypothesis(Mistake.EXCHANGED, placed, (identity_view,) * count, moved, what, fix)
 
 
 def exchanged_finding(a: str, b: str) -> CaptureFinding:
-    """Of two cameras, each of which shows what the other one should."""
+    """For two cameras, each of which shows the view of the other."""
     return CaptureFinding(
         Mistake.EXCHANGED,
         (a, b),
@@ -123,18 +125,18 @@ def exchanged_finding(a: str, b: str) -> CaptureFinding:
     )
 
 
-def _swapped(count: int, i: int, j: int) -> tuple[int, ...]:
+def _swap(count: int, i: int, j: int) -> tuple[int, ...]:
     order = list(range(count))
     order[i], order[j] = j, i
     return tuple(order)
 
 
-def _mirrored(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
+def _mirrorings(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
     count = len(cameras)
     for chosen in [(i,) for i in range(count)] + ([tuple(range(count))] if count > 1 else []):
-        mends: list[Mend] = [unchanged] * count
+        mends: list[Mend] = [identity_view] * count
         for i in chosen:
-            mends[i] = partial(mirrored, width_px=cameras[i].size_px[0])
+            mends[i] = partial(mirror_view, width_px=cameras[i].size_px[0])
         if len(chosen) == 1:
             what = f"the pictures of {cameras[chosen[0]].name!r} are mirrored, left to right"
             fix = "switch off mirroring where they are recorded, or mirror the video back"
@@ -147,7 +149,7 @@ def _mirrored(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
 def _upside_down(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
     count = len(cameras)
     for chosen in [(i,) for i in range(count)] + ([tuple(range(count))] if count > 1 else []):
-        mends: list[Mend] = [unchanged] * count
+        mends: list[Mend] = [identity_view] * count
         for i in chosen:
             mends[i] = partial(upside_down, size_px=cameras[i].size_px)
         names = " and ".join(repr(cameras[i].name) for i in chosen)
@@ -159,9 +161,9 @@ def _upside_down(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
 
 
 def _other_conventions(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
-    """All of a rig in another program's terms."""
+    """A rig in another program's conventions."""
     every = tuple(range(len(cameras)))
-    same = (unchanged,) * len(cameras)
+    same = (identity_view,) * len(cameras)
     wanted = "mocapd takes x_camera = R x_world + t: invert them"
     inverse = tuple(replace(c, R=c.R.T, t_m=centre(c)) for c in cameras)
     yield Hypothesis(

@@ -1,7 +1,7 @@
-"""Whether one of two cameras shows people larger or smaller than calibrated, from where their joints meet.
+"""Checks whether one of two cameras shows people larger or smaller than calibrated, from the intersections of joints.
 
-A zoom of a fifth moves joints by no more than the joint network errs, so the views still seem to agree. But errors of
-joints have no common scale: one camera's pictures, made larger about their middle, bring the joints nearer to their
+A zoom by a fifth moves joints by no more than the joint network's error, so the views still seem to agree. But errors of
+joints have no common scale. Enlarging one camera's pictures about their middle brings the joints nearer to their
 epipolar lines in every stretch of time, or in none (robust linear least squares).
 """
 
@@ -14,7 +14,7 @@ from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.person_views import PersonView
 from mocapd.calibrate.consistency.rig_judge import Stretch
 from mocapd.calibrate.consistency.room_points import epipolar_equations
-from mocapd.calibrate.consistency.view_agreement import fit_pair, resampled
+from mocapd.calibrate.consistency.view_agreement import fit_pair, resample_view
 from mocapd.types import Camera, Floats
 
 _SURE_CELLS = 1.5
@@ -26,26 +26,26 @@ _SHIFT, _JOINTS = (
     0.01,
     60,
 )  # of pictures, in focal lengths: as many joints would be needed to show such a shift
-_SD = 0.02  # of a scale that is known: cameras that face each other measure none
-_BOTH = 0.17  # logarithms of the two cameras' scales, that are opposite, together: 0.13 where nothing is wrong
+_SD = 0.02  # of a scale that counts: cameras that face each other measure none
+_BOTH = 0.17  # sum of the logarithms of the two cameras' scales, which are opposite: 0.13 for correct cameras
 _LEAST_STRETCHES = 2
 
 
 def scaled_findings(
     cameras: Sequence[Camera], stretches: Sequence[Stretch]
 ) -> tuple[CaptureFinding, ...]:
-    """Of the two cameras that disagree most about the size of people; nothing where none surely do."""
+    """Findings of the two cameras that disagree most about the size of people; empty without a clear case."""
     worst, which = _BOTH, None
     for i, j in combinations(range(len(cameras)), 2):
         scales = [
-            one
-            for seen in stretches
-            if (one := _scales((cameras[i], cameras[j]), seen[i], seen[j])) is not None
+            scales
+            for views in stretches
+            if (scales := _scales((cameras[i], cameras[j]), views[i], views[j])) is not None
         ]
         if len(scales) < _LEAST_STRETCHES:
             continue
         logs = np.log(scales)
-        # what holds in every stretch: the least in the first camera's sense, and in the opposite one's
+        # true in every stretch: the smallest scale in the first camera's sense, and in the opposite one's
         for sense in (1.0, -1.0):
             held = float((sense * logs[:, 0]).min() + (-sense * logs[:, 1]).min())
             if held > worst:
@@ -68,8 +68,8 @@ def scaled_findings(
 def _scales(
     cameras: tuple[Camera, Camera], first: Sequence[PersonView], second: Sequence[PersonView]
 ) -> tuple[float, float] | None:
-    """How many times larger than calibrated each camera shows the person that both see in a stretch, the other one being
-    right."""
+    """How many times larger than calibrated each camera shows their common person in a stretch, assuming that the other
+    camera is right."""
     best, most = None, _FITS
     for a in first:
         for b in second:
@@ -78,15 +78,15 @@ def _scales(
                 best, most = (a, b), fit.cost
     if best is None:
         return None
-    a, b = best[0], resampled(best[1], best[0].times_s)
+    a, b = best[0], resample_view(best[1], best[0].times_s)
     both = (a.spread < _SURE_CELLS) & (b.spread < _SURE_CELLS) & np.isfinite(b.px[..., 0])
     if both.sum() < _LEAST:
         return None
     px = a.px[both], b.px[both]
-    found = [_scale(cameras, px, index) for index in (0, 1)]
-    if max(sd for _, sd in found) > _SD:
+    estimates = [_scale(cameras, px, index) for index in (0, 1)]
+    if max(sd for _, sd in estimates) > _SD:
         return None
-    return found[0][0], found[1][0]
+    return estimates[0][0], estimates[1][0]
 
 
 def _scale(

@@ -1,8 +1,8 @@
-"""By how much cameras' pictures are late, from how much moves in each of them at every instant.
+"""Estimates delays between cameras from the amount of motion in each at every instant.
 
-Whatever one camera sees begin and end to move, or a lamp change, the others see at the same instant, from wherever
-they look. The signals are correlated over trial delays; parts of the recording that are left out in turn say how
-sure the best one is (jackknife).
+The start or end of a movement, or a change of a lamp, appears in all cameras at the same instant, from any viewpoint.
+The signals are correlated over trial delays; leaving out parts of the recording in turn gives the standard deviation of
+the best one (jackknife).
 """
 
 from collections.abc import Sequence
@@ -19,8 +19,8 @@ _NOISE = 4.0  # of a smoothed grey value, 0..255
 _QUIET = 200.0  # added before the logarithm: below it motion is noise
 _GRID_S = 1.0 / 120.0
 _MOST_S = (0.75, 1.5)  # trial delays,
-_MOST_SHARE = 0.15  # of what is recorded in common
-_FAST_S, _SLOW_S = 0.04, 0.27  # the band of motion that is compared
+_MOST_SHARE = 0.15  # of the common recording
+_FAST_S, _SLOW_S = 0.04, 0.27  # the pass band of motion
 _BLOCKS = 8
 _LEAST_S = 3.0  # of a common recording, besides what delays cut off
 _PEAK_S = 0.1  # about a peak of correlation, which is no rival of itself
@@ -33,7 +33,7 @@ _LEAST_PEAK, _CLEAR = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MotionSignal:
-    """How much moves in one camera's pictures: at times_s (N,) [s], log of the change (N,)."""
+    """The amount of motion in one camera's pictures: at times_s (N,) [s], log of the change (N,)."""
 
     times_s: Floats
     change: Floats
@@ -41,9 +41,9 @@ class MotionSignal:
 
 @dataclass(frozen=True, slots=True)
 class CameraDelay:
-    """late_s: the camera's times are too early by so much (its pictures show what the others show at later stamps when
-    it is negative); sd_s: of it, by the jackknife; agreement: correlation with the others at this delay, and at none;
-    rival: the highest correlation at any delay farther off."""
+    """late_s: by how much the camera's times are too early (negative: too late); sd_s: its standard deviation by the
+    jackknife; agreement: correlation with the others at this delay, and at none; rival: the highest correlation at any
+    delay farther off."""
 
     late_s: float
     sd_s: float
@@ -83,16 +83,16 @@ class MotionMeter:
 
 
 def camera_delays(signals: Sequence[MotionSignal]) -> list[CameraDelay | None]:
-    """Of each camera, its delay against the others, whose median is none. None where nothing can be said.
+    """The delay of each camera relative to the others, whose median is 0. None for an undetermined one.
 
-    Only pairs of cameras that clearly move alike at one delay count. Cameras that no chain of such pairs joins with most
-    of the others see other things, and nothing is said of them.
+    Only pairs of cameras with a clear common peak count. Cameras that no chain of such pairs connects with most of the
+    others see other things, so their delay is undetermined.
     """
     count = len(signals)
-    found = _pair_blocks(signals)
-    if found is None:
+    correlations = _pair_blocks(signals)
+    if correlations is None:
         return [None] * count
-    lags_s, blocks = found
+    lags_s, blocks = correlations
     curves = blocks.sum(axis=-1)
     weights = _weights(lags_s, curves)
     joined = _largest_group(weights)
@@ -105,12 +105,12 @@ def camera_delays(signals: Sequence[MotionSignal]) -> list[CameraDelay | None]:
     )
     sd = np.sqrt((_BLOCKS - 1) / _BLOCKS * ((others - others.mean(axis=0)) ** 2).sum(axis=0))
     return [
-        _judged(lags_s, curves, weights, late, i, float(sd[i])) if joined[i] else None
+        _judge_delay(lags_s, curves, weights, late, i, float(sd[i])) if joined[i] else None
         for i in range(count)
     ]
 
 
-def _judged(
+def _judge_delay(
     lags_s: Floats, curves: Floats, weights: Floats, late: Floats, i: int, sd_s: float
 ) -> CameraDelay:
     mine = _about(lags_s, curves, weights, late, i)
@@ -134,7 +134,7 @@ def _about(lags_s: Floats, curves: Floats, weights: Floats, late: Floats, i: int
 
 
 def _weights(lags_s: Floats, curves: Floats) -> Floats:
-    """(N,N): what each pair's curve counts, 0 where it has no clear peak."""
+    """(N,N): the weight of each pair's curve, 0 without a clear peak."""
     count = len(curves)
     out = np.zeros((count, count))
     for i, j in combinations(range(count), 2):
@@ -148,7 +148,7 @@ def _weights(lags_s: Floats, curves: Floats) -> Floats:
 
 
 def _largest_group(weights: Floats) -> np.ndarray:
-    """(N,): the cameras of the largest group that is joined by pairs of weight."""
+    """(N,): the cameras of the largest group that pairs of non-zero weight connect."""
     count = len(weights)
     reach = np.linalg.matrix_power((weights > 0.0) + np.eye(count), count) > 0.0
     group = reach[int(reach.sum(axis=1).argmax())]
@@ -156,23 +156,23 @@ def _largest_group(weights: Floats) -> np.ndarray:
 
 
 def _pair_blocks(signals: Sequence[MotionSignal]) -> tuple[Floats, Floats] | None:
-    """Lags (L,) [s] and (N,N,L,B): of camera i late by each lag against camera j, what each block of time adds to the
-    correlation."""
-    if len(signals) < 2 or any(len(one.times_s) < 10 for one in signals):
+    """Lags (L,) [s] and (N,N,L,B): the contribution of each block of time to the correlation of camera i, late by each
+    lag, with camera j."""
+    if len(signals) < 2 or any(len(signal.times_s) < 10 for signal in signals):
         return None
-    begin = max(float(one.times_s[0]) for one in signals)
-    end = min(float(one.times_s[-1]) for one in signals)
+    begin = max(float(signal.times_s[0]) for signal in signals)
+    end = min(float(signal.times_s[-1]) for signal in signals)
     most_s = float(np.clip(_MOST_SHARE * (end - begin), *_MOST_S))
     if end - begin - 2.0 * most_s < _LEAST_S:
         return None
     grid_s = np.arange(begin, end, _GRID_S)
-    banded = [_band(np.interp(grid_s, one.times_s, one.change)) for one in signals]
+    banded = [_band(np.interp(grid_s, signal.times_s, signal.change)) for signal in signals]
     n = round(most_s / _GRID_S)
     inner = len(grid_s) - 2 * n
     cuts = np.linspace(0, inner, _BLOCKS + 1).astype(int)[:-1]
     out = np.zeros((len(signals), len(signals), 2 * n + 1, _BLOCKS))
     for i, a in enumerate(banded):
-        # late by a lag: what it shows at t - lag the other one shows at t
+        # late by a lag: its view at t - lag is the other one's at t
         moved = np.lib.stride_tricks.sliding_window_view(a, inner)[::-1]
         for j, b in enumerate(banded):
             if i == j:
@@ -185,7 +185,7 @@ def _pair_blocks(signals: Sequence[MotionSignal]) -> tuple[Floats, Floats] | Non
 
 
 def _band(values: Floats) -> Floats:
-    """Without what changes slowly, and without noise."""
+    """Band-pass filter: removes slow changes and noise."""
     fast, slow = _FAST_S / _GRID_S, _SLOW_S / _GRID_S
     column = values[None].astype(np.float64)
     smooth = cv2.GaussianBlur(column, (0, 0), fast, borderType=cv2.BORDER_REPLICATE)
@@ -194,8 +194,8 @@ def _band(values: Floats) -> Floats:
 
 
 def _solve(lags_s: Floats, curves: Floats, weights: Floats, joined: np.ndarray) -> Floats:
-    """The delays (N,) [s] at which pairs (N,N,L) correlate most: one camera after the other, from no delay on; 0 for
-    cameras that are not joined with the others."""
+    """The delays (N,) [s] of the best correlation over pairs (N,N,L), by coordinate ascent from no delay; 0 for
+    unconnected cameras."""
     late = np.zeros(len(curves))
     those = np.flatnonzero(joined)
     for _ in range(2 * len(those)):
@@ -215,7 +215,7 @@ def _solve(lags_s: Floats, curves: Floats, weights: Floats, joined: np.ndarray) 
 
 
 def _peak(lags_s: Floats, curve: Floats, k: int) -> float:
-    """Between the points of a curve, by a parabola over the highest and its neighbours."""
+    """The sub-sample peak of a curve, by a parabola over the highest point and its neighbours."""
     if not 0 < k < len(curve) - 1:
         return float(lags_s[k])
     a, b, c = curve[k - 1 : k + 2]

@@ -1,4 +1,4 @@
-"""Whether a rig fits what its cameras show of people; and where not, which known mistake makes the views agree."""
+"""Checks a rig against its cameras' views of people, and searches for a mistake that explains a contradiction."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,25 +11,25 @@ from mocapd.calibrate.consistency.hypotheses import (
     Hypothesis,
     as_given,
     hypotheses,
-    shifted,
+    shifted_zooms,
     zooms,
 )
 from mocapd.calibrate.consistency.person_views import PersonView
-from mocapd.calibrate.consistency.view_agreement import PairFit, fit_pair, thinned
+from mocapd.calibrate.consistency.view_agreement import PairFit, fit_pair, thin_view
 from mocapd.types import Camera
 
-Stretch = Sequence[Sequence[PersonView]]  # by camera, the people that it saw in a few seconds
+Stretch = Sequence[Sequence[PersonView]]  # by camera, its people in a few seconds
 _Pair = tuple[int, int, int]  # of cameras, in a stretch
 
-_WELL = 0.6  # cost of two views that nothing could make agree better
+_WELL = 0.6  # cost of two views that leaves nothing to improve
 _FITS = 1.5  # cost of two views above which they are of no use, or do not agree
-_GAIN = 0.3  # mean of costs that an explanation must bring
+_GAIN = 0.3  # least mean gain in cost of an explanation
 _ZOOM_GAIN = 0.2
 _AGREES = 1.0  # cost of two views that agree, whatever may be better
-_AGAINST = 0.2  # share of views that agree well as given, for a mistake to be one
-_RIVAL = 0.75  # of what the best zoom brings, another camera's that may be meant as well
-_OFTEN = 0.65  # share of stretches that an explanation must improve
-# Views of people contradict each other beyond this for good: where the same moves in both, and where it does not
+_AGAINST = 0.2  # a larger share of views that agree as given excludes a mistake
+_RIVAL = 0.75  # of the best zoom's gain; another camera's with more is an alternative
+_OFTEN = 0.65  # least share of stretches that an explanation must improve
+# Limits of angles between views of people that contradict each other: with the same motion in both, and without
 _CONTRADICT_DEG, _STRANGE_DEG = 1.8, 1.15
 _LEAST_STRETCHES = 2
 _LEAST_FOR_ZOOM = 3  # views that fit, for a mistake with free numbers
@@ -37,8 +37,8 @@ _LEAST_FOR_ZOOM = 3  # views that fit, for a mistake with free numbers
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RigVerdict:
-    """findings: what does not agree; fits: of the views, as they are mended by the best explanation; off_m: how far views are
-    apart where nothing explains it [m]."""
+    """findings: the contradictions; fits: of the views, corrected by the best explanation; off_m: distance between
+    views where nothing explains it [m]."""
 
     findings: tuple[CaptureFinding, ...]
     fits: tuple[PairFit, ...]
@@ -48,9 +48,9 @@ class RigVerdict:
 def judge(
     cameras: Sequence[Camera], stretches: Sequence[Stretch], moves_alike: Sequence[bool] = ()
 ) -> RigVerdict:
-    """Of cameras that are given, and what they saw. Nothing is found where too little is seen in common. moves_alike: by
-    camera, whether what moves there moves in the others at the same time; all do by default."""
-    table = _Table([[[thinned(one) for one in views] for views in seen] for seen in stretches])
+    """Checks given cameras against their views. No finding where they have too little in common. moves_alike: by
+    camera, whether its motion coincides with the others'; all do by default."""
+    table = _Table([[[thin_view(view) for view in views] for views in part] for part in stretches])
     given = table.fits(as_given(cameras))
     if not given:
         return RigVerdict((), ())
@@ -71,37 +71,37 @@ class _Table:
         self._stretches = stretches
 
     def fits(
-        self, hypothesis: Hypothesis, known: Mapping[_Pair, PairFit] | None = None
+        self, hypothesis: Hypothesis, given: Mapping[_Pair, PairFit] | None = None
     ) -> dict[_Pair, PairFit]:
-        """Of each two cameras in each stretch the two people that agree best; `known`: of cameras that it does not affect."""
+        """For each two cameras in each stretch the two people that agree best; `given`: reused for unaffected pairs."""
         out: dict[_Pair, PairFit] = {}
-        for k, seen in enumerate(self._stretches):
+        for k, stretch in enumerate(self._stretches):
             mended = [
-                [mend(one) for one in views]
-                for mend, views in zip(hypothesis.mends, seen, strict=True)
+                [mend(view) for view in views]
+                for mend, views in zip(hypothesis.mends, stretch, strict=True)
             ]
-            for i, j in combinations(range(len(seen)), 2):
+            for i, j in combinations(range(len(stretch)), 2):
                 key = (i, j, k)
                 if (
-                    known is not None
+                    given is not None
                     and i not in hypothesis.affected
                     and j not in hypothesis.affected
                 ):
-                    if key in known:
-                        out[key] = known[key]
+                    if key in given:
+                        out[key] = given[key]
                     continue
                 cameras = hypothesis.cameras[i], hypothesis.cameras[j]
-                found = [fit_pair(cameras, (a, b)) for a in mended[i] for b in mended[j]]
-                there = [one for one in found if one is not None]
-                if there:
-                    out[key] = min(there, key=lambda one: one.cost)
+                pairs = [fit_pair(cameras, (a, b)) for a in mended[i] for b in mended[j]]
+                fits = [fit for fit in pairs if fit is not None]
+                if fits:
+                    out[key] = min(fits, key=lambda fit: fit.cost)
         return out
 
 
 def _best_explanation(
     cameras: Sequence[Camera], table: _Table, given: Mapping[_Pair, PairFit]
 ) -> Hypothesis | None:
-    """The mistake whose mending brings most, if it brings enough; None where all is well, or nothing helps."""
+    """The mistake with the largest gain, if large enough; None for a correct rig, or without an explanation."""
     count = len(cameras)
     if all(_cost(given, i, j) < _WELL for i, j in combinations(range(count), 2)):
         return None
@@ -112,7 +112,7 @@ def _best_explanation(
         gain = _gain(one, table.fits(one, given), given, _GAIN)
         if gain > most:
             best, most = one, gain
-    # a zoom and its middle are free numbers, which a mistake of another kind has not
+    # a zoom and its middle are free parameters, which the other mistakes do not have
     zoomed = _best_zoom(cameras, table, given)
     if zoomed is not None and zoomed[1] > 1.15 * most + 0.05:
         return zoomed[0]
@@ -122,8 +122,8 @@ def _best_explanation(
 def _best_zoom(
     cameras: Sequence[Camera], table: _Table, given: Mapping[_Pair, PairFit]
 ) -> tuple[Hypothesis, float] | None:
-    """The zoom of one camera that brings most, and what it brings; it names all cameras of which one may be zoomed."""
-    found: list[tuple[Hypothesis, float]] = []
+    """The zoom of one camera with the largest gain, and the gain; names all cameras that may be the zoomed one."""
+    gains: list[tuple[Hypothesis, float]] = []
     for i in range(len(cameras)):
         if _cost_about(given, (i,)) < _WELL:
             continue
@@ -131,17 +131,17 @@ def _best_zoom(
         if zoom is None:
             continue
         factor = float(zoom.mends[i].keywords["factor"])  # type: ignore[attr-defined]
-        finer, more = _best_of(shifted(cameras, i, 1.0 / factor), table, given)
-        found.append((finer, more) if finer is not None and more > brought else (zoom, brought))
-    if not found:
+        finer, more = _best_of(shifted_zooms(cameras, i, 1.0 / factor), table, given)
+        gains.append((finer, more) if finer is not None and more > brought else (zoom, brought))
+    if not gains:
         return None
-    best, most = max(found, key=lambda one: one[1])
-    rivals = [one for one, brought in found if brought > _RIVAL * most and one is not best]
+    best, most = max(gains, key=lambda entry: entry[1])
+    rivals = [zoom for zoom, brought in gains if brought > _RIVAL * most and zoom is not best]
     if not rivals:
         return best, most
-    affected = tuple(sorted({best.affected[0], *(one.affected[0] for one in rivals)}))
+    affected = tuple(sorted({best.affected[0], *(rival.affected[0] for rival in rivals)}))
     return replace(
-        best, affected=affected, what="; or ".join(one.what for one in (best, *rivals))
+        best, affected=affected, what="; or ".join(zoom.what for zoom in (best, *rivals))
     ), most
 
 
@@ -149,10 +149,10 @@ def _best_of(
     some: Iterable[Hypothesis], table: _Table, given: Mapping[_Pair, PairFit]
 ) -> tuple[Hypothesis | None, float]:
     best, most = None, 0.0
-    for one in some:
-        gain = _gain(one, table.fits(one, given), given, _ZOOM_GAIN)
+    for hypothesis in some:
+        gain = _gain(hypothesis, table.fits(hypothesis, given), given, _ZOOM_GAIN)
         if gain > most:
-            best, most = one, gain
+            best, most = hypothesis, gain
     return best, most
 
 
@@ -162,7 +162,7 @@ def _gain(
     given: Mapping[_Pair, PairFit],
     least: float,
 ) -> float:
-    """What an explanation brings, summed over pairs of views; 0 where that is not enough, or not often enough."""
+    """The gain of an explanation, summed over pairs of views; 0 for a small gain, or one in too few stretches."""
     gains, costs, against, when = [], [], 0, set()
     for key, before in given.items():
         after = fits.get(key)
@@ -172,25 +172,25 @@ def _gain(
             gains.append(before.cost - after.cost)
             costs.append(after.cost)
             when.add(key[2])
-            # who agrees well as given, once, has no mistake that lasts
+            # one stretch that agrees well as given excludes a lasting mistake
             against += before.cost < _AGREES and gains[-1] < 0.5 * least
     few = len(gains) < _LEAST_FOR_ZOOM if hypothesis.mistake is Mistake.ZOOMED else False
     if few or len(when) < _LEAST_STRETCHES or against > _AGAINST * len(gains):
         return 0.0
     if np.mean([fit.up[1] for fit in fits.values() if np.isfinite(fit.up[1])] or [1.0]) < 0.0:
-        return 0.0  # what stands everybody on the head explains nothing
+        return 0.0  # a hypothesis with people upside down explains nothing
     enough = np.mean(gains) >= least and np.mean(np.array(gains) > 0.0) >= _OFTEN
     return float(np.sum(gains)) if enough and np.median(costs) < _FITS else 0.0
 
 
 def _cost(fits: Mapping[_Pair, PairFit], i: int, j: int) -> float:
-    """Of two cameras, the median of their stretches; 0 where they saw nothing in common."""
+    """The median cost of two cameras over stretches; 0 without common views."""
     costs = [fit.cost for key, fit in fits.items() if key[:2] == (i, j)]
     return float(np.median(costs)) if costs else 0.0
 
 
 def _cost_about(fits: Mapping[_Pair, PairFit], affected: Sequence[int]) -> float:
-    """Mean cost of the pairs that some cameras are of."""
+    """Mean cost of the pairs of some cameras."""
     costs = [fit.cost for key, fit in fits.items() if {key[0], key[1]} & set(affected)]
     return float(np.mean(costs)) if costs else 0.0
 
@@ -198,7 +198,7 @@ def _cost_about(fits: Mapping[_Pair, PairFit], affected: Sequence[int]) -> float
 def _contradicting(
     cameras: Sequence[Camera], given: Mapping[_Pair, PairFit], moves_alike: Sequence[bool]
 ) -> tuple[CaptureFinding, ...]:
-    """A camera that agrees with none of the others at any time, for whatever reason."""
+    """A camera that never agrees with any other one, for any reason."""
     out = []
     for i, camera in enumerate(cameras):
         mine = [fit for key, fit in given.items() if i in key[:2]]
@@ -227,6 +227,6 @@ def _contradicting(
 
 
 def _off_m(fits: Iterable[PairFit]) -> float:
-    """How far rays pass each other at the body, median."""
+    """Median distance between rays at the body."""
     off = [np.radians(fit.angle_deg) * fit.away_m for fit in fits if np.isfinite(fit.away_m)]
     return float(np.median(off)) if off else 1.0

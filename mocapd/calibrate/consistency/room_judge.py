@@ -1,4 +1,4 @@
-"""What the rooms that cameras show say beside people: whether they are in their places, and see as calibrated."""
+"""Combines the findings of people with the room's points: camera places and calibration of the pictures."""
 
 from collections.abc import Sequence
 from itertools import combinations
@@ -21,13 +21,13 @@ def with_the_room(
     pictures: Sequence[Bytes | None],
     findings: tuple[CaptureFinding, ...],
 ) -> tuple[CaptureFinding, ...]:
-    """The findings by people, without those that the room's points contradict; where there were none, the room's own.
+    """The findings of people, without those that the room's points contradict; if there are none, the room's own.
 
-    pictures (h,w,3) BGR: what each camera shows at one time, None where that is not known.
+    pictures (h,w,3) BGR: each camera's at one time, None where there is none.
     """
-    concerned = {name for one in findings for name in one.cameras}
+    concerned = {name for finding in findings for name in finding.cameras}
     params = PlacesParams()
-    features = [None if one is None else room_features(one, params) for one in pictures]
+    features = [None if picture is None else room_features(picture, params) for picture in pictures]
     out = list(findings)
     worst: tuple[RoomVerdict, tuple[str, str]] | None = None
     for i, j in combinations(range(len(cameras)), 2):
@@ -87,11 +87,11 @@ def _change_words(change: PictureChange) -> tuple[Mistake, str, str]:
         "were they cut, zoomed or letterboxed after calibration? Record as then, or calibrate again"
     )
     if change.is_central:
-        seen = "larger" if change.scale > 1.0 else "smaller"
+        size_word = "larger" if change.scale > 1.0 else "smaller"
         times = max(change.scale, 1.0 / change.scale)
         return (
             Mistake.ZOOMED,
-            f"about {times:.1f} times {seen} than their focal length makes them",
+            f"about {times:.1f} times {size_word} than their focal length makes them",
             fix,
         )
     return Mistake.ZOOMED, "cut, zoomed or shifted from how they were calibrated", fix

@@ -1,9 +1,9 @@
-"""What the room's points, found in two cameras' pictures, say of how the pictures are calibrated.
+"""Checks the calibration of two cameras' pictures by matching points of the room.
 
-Points of a room that match must lie on each other's epipolar lines. Where they do not, but would if one camera's pictures
-were shifted, scaled, mirrored or turned by 180 degrees, that is what was done with them: of three matches these are
-linear equations, and most of the others must agree (RANSAC). Matches that fit some geometry of two cameras but
-not the given one contradict it whatever the reason.
+Matching points must lie on each other's epipolar lines. Where they do not, but would after shifting, scaling, mirroring or
+rotating one camera's pictures by 180 degrees, that is the mistake. For three matches these are linear equations, and most
+of the other matches must agree (RANSAC). Matches that fit some fundamental matrix but not the given cameras contradict
+them, whatever the reason.
 """
 
 from collections.abc import Sequence
@@ -17,23 +17,26 @@ from mocapd.types import Camera, Floats
 
 _OFF = float(np.radians(0.3))  # of a match from its epipolar line
 _TRIALS = 400
-_SCALES = (0.35, 3.0)  # of pictures that somebody may have made so
-_SHIFT = 0.4  # of pictures, in focal lengths: one standard deviation before anything is known
+_SCALES = (0.35, 3.0)  # of pictures after a user's edit
+_SHIFT = 0.4  # prior of the shift of pictures, in focal lengths, one standard deviation
 _LEAST_MATCHES = 12
-_LEAST, _TIMES = 25, 6.0  # matches that a change explains, and as many times as fit as given
-_LEAST_CENTRAL = 20  # of a change of one number
-_SHARE = 0.25  # of all matches, that a change explains
+_LEAST, _TIMES = (
+    25,
+    6.0,
+)  # least matches that a change explains, and least ratio to the matches as given
+_LEAST_CENTRAL = 20  # of a change with one parameter
+_SHARE = 0.25  # least share of all matches that a change explains
 _TRIED_SCALES = np.exp(np.linspace(np.log(0.4), np.log(2.5), 185))
 _AS_WELL = 0.9  # of the matches that the best change explains: it may be the one as well
-# Matches that some geometry of two cameras explains, as a share of all, and of these the share as given
+# Least count and share of matches that some geometry of two cameras explains, and largest share of these as given
 _FREE_LEAST, _FREE_SHARE, _FREE_GIVEN = 50, 0.6, 0.12
 _FREE_OFF_PX = 1.5
 
 
 @dataclass(frozen=True, slots=True)
 class PictureChange:
-    """cameras: indexes 0 and 1 of those that may be the changed ones; scale: how many times larger what they show is than
-    calibrated; is_central: scaled about its middle, and nothing else; count: matches that this explains."""
+    """cameras: indexes 0 and 1 of those that may be the changed ones; scale: enlargement of their view relative to the
+    calibration; is_central: scaled about its middle, and nothing else; count: matches that this explains."""
 
     cameras: tuple[int, ...]
     scale: float
@@ -45,8 +48,8 @@ class PictureChange:
 
 @dataclass(frozen=True, slots=True)
 class RoomVerdict:
-    """matches: of points in both pictures; given: of these, how many fit the cameras; free: how many fit some geometry of two
-    cameras; change: what explains most of them, None where nothing does or nothing has to."""
+    """matches: points in both pictures; given: how many of them fit the cameras; free: how many fit some geometry of two
+    cameras; change: the one that explains most of them, None where none does or none is needed."""
 
     matches: int
     given: int
@@ -55,7 +58,7 @@ class RoomVerdict:
 
     @property
     def is_contradiction(self) -> bool:
-        """Whether the matches are surely of one room, and surely not of the cameras as given."""
+        """Whether the matches are certainly of one room, and certainly not of the cameras as given."""
         return self.change is not None or (
             self.free >= max(_FREE_LEAST, _FREE_SHARE * self.matches)
             and self.given < _FREE_GIVEN * self.free
@@ -63,22 +66,22 @@ class RoomVerdict:
 
 
 def judge_room(cameras: tuple[Camera, Camera], px: tuple[Floats, Floats]) -> RoomVerdict:
-    """Of two cameras and the points (N,2) [px] that match in what they show at one time."""
+    """Judge two cameras by the points (N,2) [px] that match in simultaneous pictures."""
     matches = len(px[0])
     if matches < _LEAST_MATCHES:
         return RoomVerdict(matches, 0, 0, None)
-    given = _given(cameras, px)
+    given = _count_given(cameras, px)
     if given > matches / _TIMES:
         return RoomVerdict(matches, given, given, None)
     free = _fitting_anything(px)
-    found = [_best_change(cameras, px, i, flip) for i in (0, 1) for flip in (1.0, -1.0)]
-    found += [_best_scale(cameras, px, scaled) for scaled in ((0,), (1,), (0, 1))]
-    sure = [one for one in found if _is_sure(one, matches, given)]
+    changes = [_best_change(cameras, px, i, flip) for i in (0, 1) for flip in (1.0, -1.0)]
+    changes += [_best_scale(cameras, px, scaled) for scaled in ((0,), (1,), (0, 1))]
+    sure = [change for change in changes if _is_sure(change, matches, given)]
     return RoomVerdict(matches, given, free, _likeliest(sure) if sure else None)
 
 
-def _given(cameras: tuple[Camera, Camera], px: tuple[Floats, Floats]) -> int:
-    """Matches on each other's epipolar lines, in either picture, in whatever unit and with whatever axes the rig is."""
+def _count_given(cameras: tuple[Camera, Camera], px: tuple[Floats, Floats]) -> int:
+    """The number of matches on each other's epipolar lines, in either picture, for any units and axes of the rig."""
     off = []
     for index in (0, 1):
         A, b = epipolar_equations(cameras, px, index)
@@ -91,17 +94,17 @@ def _is_sure(change: PictureChange, matches: int, given: int) -> bool:
     return change.count >= max(least, _TIMES * (given + 1), _SHARE * matches)
 
 
-def _likeliest(found: Sequence[PictureChange]) -> PictureChange | None:
-    """The change with most matches, of those near it the simplest; it names all cameras of which one may be changed so."""
-    most = max(one.count for one in found)
-    near = [one for one in found if one.count >= _AS_WELL * most]
-    plain = [one for one in near if not one.is_mirrored and not one.is_turned] or near
-    best = max(plain, key=lambda one: (one.is_central, one.count))
+def _likeliest(changes: Sequence[PictureChange]) -> PictureChange | None:
+    """The change with most matches, of those near it the simplest; names all cameras that may have it."""
+    most = max(change.count for change in changes)
+    near = [change for change in changes if change.count >= _AS_WELL * most]
+    plain = [change for change in near if not change.is_mirrored and not change.is_turned] or near
+    best = max(plain, key=lambda change: (change.is_central, change.count))
     alike = {
         i
-        for one in plain
-        if one.is_mirrored == best.is_mirrored and one.is_turned == best.is_turned
-        for i in one.cameras
+        for change in plain
+        if change.is_mirrored == best.is_mirrored and change.is_turned == best.is_turned
+        for i in change.cameras
     }
     return replace(best, cameras=tuple(sorted(alike)))
 
@@ -109,18 +112,18 @@ def _likeliest(found: Sequence[PictureChange]) -> PictureChange | None:
 def _best_change(
     cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], index: int, flip: float
 ) -> PictureChange:
-    """By RANSAC, how pictures of the one camera, mirrored first where flip is -1, have to be scaled and shifted."""
+    """RANSAC for the scale and shift of one camera's pictures, mirrored first where flip is -1."""
     A, b = epipolar_equations(cameras, px, index, flip)
     rng = np.random.default_rng(0)
     ids = rng.integers(0, len(A), (_TRIALS, 3))
-    solved = _solved(A[ids], b[ids])
+    solved = _solve_linear(A[ids], b[ids])
     inside = _agree(A, b, solved)
     best = solved[int(inside.sum(axis=1).argmax())]
     for _ in range(3):
         use = _agree(A, b, best[None])[0]
         if use.sum() < 3:
             break
-        best = _solved(A[use][None], b[use][None])[0]
+        best = _solve_linear(A[use][None], b[use][None])[0]
     count = int(_agree(A, b, best[None]).sum())
     scale = float(best[0])
     return PictureChange(
@@ -131,7 +134,7 @@ def _best_change(
 def _best_scale(
     cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], scaled: tuple[int, ...]
 ) -> PictureChange:
-    """By how much the pictures of one camera, or of both alike, were made larger about their middles."""
+    """The enlargement about their middles of the pictures of one camera, or of both alike."""
     xy = [normalised(camera, at) for camera, at in zip(cameras, px, strict=True)]
     apart = centre(cameras[1]) - centre(cameras[0])
     counts = []
@@ -152,8 +155,8 @@ def _best_scale(
 def epipolar_equations(
     cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], index: int, flip: float = 1.0
 ) -> tuple[Floats, Floats]:
-    """A (N,3), b (N,): A (s, x, y) = b holds for matches (N,2) [px] if what the one camera shows, mirrored where flip is -1,
-    has to be scaled by s about its principal point and shifted by x, y [focal lengths]. Residuals are angles [rad]."""
+    """A (N,3), b (N,): A (s, x, y) = b holds for matches (N,2) [px] if the one camera's picture, mirrored where flip is -1,
+    needs scaling by s about its principal point and a shift by x, y [focal lengths]. Residuals are angles [rad]."""
     mine, other = cameras[index], cameras[1 - index]
     xy = normalised(other, px[1 - index])
     ray = np.concatenate([xy, np.ones((len(xy), 1))], axis=1) @ other.R
@@ -165,8 +168,8 @@ def epipolar_equations(
     return np.concatenate([along, lines[:, :2]], axis=1), -lines[:, 2]
 
 
-def _solved(A: Floats, b: Floats) -> Floats:
-    """(T,3) scale and shift of T times M equations (T,M,3), (T,M); what they leave open is near no shift."""
+def _solve_linear(A: Floats, b: Floats) -> Floats:
+    """(T,3) scale and shift of T times M equations (T,M,3), (T,M), regularised towards no shift."""
     prior = np.diag([0.0, 1.0, 1.0]) * (_OFF / _SHIFT) ** 2
     normal = np.einsum("tmi,tmj->tij", A, A) + prior + 1e-12 * np.eye(3)
     right = np.einsum("tmi,tm->ti", A, b)
@@ -174,7 +177,7 @@ def _solved(A: Floats, b: Floats) -> Floats:
 
 
 def _agree(A: Floats, b: Floats, solved: Floats) -> np.ndarray:
-    """(T,N): matches that agree with each solution, by how far off they are in the picture as it is shown."""
+    """(T,N): inliers of each solution, by their distance in the picture."""
     scale = np.abs(solved[:, :1])
     off = np.abs(solved @ A.T - b) / np.maximum(scale, 1e-9)
     low, high = 1.0 / _SCALES[1], 1.0 / _SCALES[0]
@@ -182,7 +185,7 @@ def _agree(A: Floats, b: Floats, solved: Floats) -> np.ndarray:
 
 
 def _fitting_anything(px: tuple[Floats, Floats]) -> int:
-    """How many matches one fundamental matrix explains."""
+    """The number of inliers of a fundamental matrix (RANSAC)."""
     _, mask = cv2.findFundamentalMat(px[0], px[1], cv2.USAC_MAGSAC, _FREE_OFF_PX, 0.999, 5000)
-    # None where nothing fits, whatever OpenCV's stubs say
+    # None without a solution, which OpenCV's stubs do not say
     return int(np.count_nonzero(np.asarray(mask) == 1))

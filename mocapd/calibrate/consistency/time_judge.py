@@ -1,4 +1,4 @@
-"""Whether cameras' pictures are of the times that they are said to be of, by what moves in all of them."""
+"""Checks the times of cameras' pictures by common motion."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,20 +8,20 @@ import numpy as np
 from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.calibrate.consistency.motion_delay import CameraDelay, MotionSignal, camera_delays
 
-# of a delay that is believed: of agreement at least, of the next best agreement at most, and how sure
+# limits of a reliable delay: least agreement, largest agreement of the next best, largest deviation
 _AGREEMENT, _RIVAL, _SD_S = 0.45, 0.85, 0.034
 _GAIN = 0.02  # in agreement, of a delay
 _LEAST_S = 0.018  # over half a frame at 30 Hz
 _SURE_SDS = 3.0
-_PART_S = 5.0  # of a recording, whose delay is found by itself
-_JUMP_S = 0.05  # by which a delay changes where frames were dropped
-_ALIKE = 0.55  # agreement of cameras that surely see the same move
-# A recording's rate over the rate that its times say, of those that people set
+_PART_S = 5.0  # parts of a recording for separate delays
+_JUMP_S = 0.05  # least change of a delay after dropped frames
+_ALIKE = 0.55  # agreement of cameras that certainly see the same movement
+# A recording's true rate over the rate of its times, of common mistakes
 _RATES = (0.5, 0.6, 2 / 3, 0.8, 5 / 6, 0.96, 25 / 24, 1.2, 1.25, 1.5, 5 / 3, 2.0)
 _RATE_AGREEMENT, _RATE_GAIN = (
     0.6,
     0.2,
-)  # of a rate that is believed, and more than the rates said bring
+)  # least agreement of a corrected rate, and least gain over the given rates
 _RATE_NEAR = 0.06  # of the logarithm: rates that are no rivals
 
 
@@ -36,28 +36,28 @@ class CameraTiming:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TimeVerdict:
-    """findings: of cameras whose times are wrong; moves_alike: by camera, whether what moves in its pictures moves in the
-    others' at the same instants, once their times are corrected."""
+    """findings: of cameras with wrong times; moves_alike: by camera, whether its motion coincides with the others' once
+    their times are corrected."""
 
     findings: tuple[CaptureFinding, ...]
     moves_alike: tuple[bool, ...]
 
 
 def judge_times(cameras: Sequence[CameraTiming]) -> TimeVerdict:
-    """Of each camera whose pictures are surely late or early; or, where that changes, that it does."""
-    delays = camera_delays([one.signal for one in cameras])
+    """Findings of each camera whose times are certainly early or late, or have a jump."""
+    delays = camera_delays([camera.signal for camera in cameras])
     jumps = _jumps(cameras)
     rate = None if any(jumps) else _wrong_rate(cameras, delays)
     if rate is not None:
         return TimeVerdict((rate,), (True,) * len(cameras))
     findings = _late_findings(cameras, delays, jumps)
-    concerned = {name for one in findings for name in one.cameras}
+    concerned = {name for finding in findings for name in finding.cameras}
     alike = tuple(
         camera.name in concerned
-        or (delay is not None and _is_known(delay) and delay.agreement > _ALIKE)
+        or (delay is not None and _is_reliable(delay) and delay.agreement > _ALIKE)
         for camera, delay in zip(cameras, delays, strict=True)
     )
-    # of a pair the first camera is what delays are measured against
+    # of a pair the first camera is the reference of delays
     return TimeVerdict(findings, (all(alike),) * 2 if len(alike) == 2 else alike)
 
 
@@ -69,13 +69,13 @@ def _late_findings(
     out = []
     for camera, delay, jump in zip(cameras, delays, jumps, strict=True):
         if jump is not None:
-            out.append(_dropped(camera, *jump))
-        elif delay is not None and _is_known(delay) and _is_late(delay):
+            out.append(_jump_finding(camera, *jump))
+        elif delay is not None and _is_reliable(delay) and _is_late(delay):
             out.append(_late(camera, delay))
     return tuple(out)
 
 
-def _is_known(delay: CameraDelay) -> bool:
+def _is_reliable(delay: CameraDelay) -> bool:
     return (
         delay.sd_s < _SD_S
         and delay.agreement > _AGREEMENT
@@ -93,12 +93,12 @@ def _is_late(delay: CameraDelay) -> bool:
 def _wrong_rate(
     cameras: Sequence[CameraTiming], delays: Sequence[CameraDelay | None]
 ) -> CaptureFinding | None:
-    """A camera that moves as the others do once its times are stretched, and does not as they are."""
-    signals = [one.signal for one in cameras]
+    """A camera whose motion coincides with the others' once its times are stretched, and not as given."""
+    signals = [camera.signal for camera in cameras]
     before = _agreement(delays)
     tried: list[tuple[float, int, float, CameraDelay]] = []
     for i, delay in enumerate(delays):
-        if delay is not None and _is_known(delay) and delay.agreement > _RATE_AGREEMENT:
+        if delay is not None and _is_reliable(delay) and delay.agreement > _RATE_AGREEMENT:
             continue
         for stretch in _RATES:
             times_s = signals[i].times_s * stretch
@@ -109,7 +109,7 @@ def _wrong_rate(
                 tried.append((_agreement(after), i, stretch, mine))
     if not tried:
         return None
-    total, i, stretch, delay = max(tried, key=lambda one: one[0])
+    total, i, stretch, delay = max(tried, key=lambda entry: entry[0])
     rivals = [
         other.agreement
         for _, k, by, other in tried
@@ -117,14 +117,14 @@ def _wrong_rate(
     ]
     was = delays[i]
     if (
-        not _is_known(delay)
+        not _is_reliable(delay)
         or delay.agreement < max(_RATE_AGREEMENT, _RATE_GAIN + (was.agreement if was else 0.0))
         or total < before
         or max(rivals, default=0.0) > _RIVAL * delay.agreement
     ):
         return None
-    # of two cameras either may be the wrong one
-    names = tuple(one.name for one in cameras) if len(cameras) == 2 else (cameras[i].name,)
+    # of two cameras either may be wrong
+    names = tuple(camera.name for camera in cameras) if len(cameras) == 2 else (cameras[i].name,)
     return CaptureFinding(
         Mistake.DELAY,
         names,
@@ -135,34 +135,36 @@ def _wrong_rate(
 
 
 def _agreement(delays: Sequence[CameraDelay | None]) -> float:
-    """Of all cameras whose delay is known, summed."""
-    return sum(one.agreement for one in delays if one is not None and _is_known(one))
+    """The sum over cameras with a reliable delay."""
+    return sum(delay.agreement for delay in delays if delay is not None and _is_reliable(delay))
 
 
 def _jumps(cameras: Sequence[CameraTiming]) -> list[tuple[float, float] | None]:
-    """Of each camera, the delays of the first and the last part of the recording that are known, where they differ."""
+    """For each camera, reliable delays of the first and the last part of the recording, where they differ."""
     begin = max(
-        float(one.signal.times_s[0]) if len(one.signal.times_s) else np.inf for one in cameras
+        float(camera.signal.times_s[0]) if len(camera.signal.times_s) else np.inf
+        for camera in cameras
     )
     end = min(
-        float(one.signal.times_s[-1]) if len(one.signal.times_s) else -np.inf for one in cameras
+        float(camera.signal.times_s[-1]) if len(camera.signal.times_s) else -np.inf
+        for camera in cameras
     )
     if end - begin < 1.5 * _PART_S:
         return [None] * len(cameras)
     parts = [
-        camera_delays([_between(one.signal, low, low + _PART_S) for one in cameras])
+        camera_delays([_part(camera.signal, low, low + _PART_S) for camera in cameras])
         for low in np.arange(begin, end - _PART_S + 1e-6, 0.25 * _PART_S)
     ]
     out: list[tuple[float, float] | None] = []
     for i in range(len(cameras)):
         there = [one for part in parts if (one := part[i]) is not None]
-        late_s = [one.late_s for one in there if _is_known(one)]
+        late_s = [delay.late_s for delay in there if _is_reliable(delay)]
         changed = len(late_s) > 1 and abs(late_s[-1] - late_s[0]) > _JUMP_S
         out.append((late_s[0], late_s[-1]) if changed else None)
     return out
 
 
-def _between(signal: MotionSignal, low_s: float, high_s: float) -> MotionSignal:
+def _part(signal: MotionSignal, low_s: float, high_s: float) -> MotionSignal:
     inside = (signal.times_s >= low_s) & (signal.times_s < high_s)
     return MotionSignal(signal.times_s[inside], signal.change[inside])
 
@@ -179,7 +181,7 @@ def _late(camera: CameraTiming, delay: CameraDelay) -> CaptureFinding:
     )
 
 
-def _dropped(camera: CameraTiming, first_s: float, last_s: float) -> CaptureFinding:
+def _jump_finding(camera: CameraTiming, first_s: float, last_s: float) -> CaptureFinding:
     frames = abs(last_s - first_s) / camera.period_s
     return CaptureFinding(
         Mistake.DELAY,

@@ -1,8 +1,8 @@
-"""How well two cameras' views of one person agree, if the cameras stand and see as a hypothesis says.
+"""Measures the agreement of two cameras' views of one person under a hypothesis of the cameras.
 
-The rays to a joint must meet (epipolar constraint), before both cameras; what meets must be as large as a person; and
-what is farther by triangulation must be farther as each picture alone suggests it. The last tells a person from the
-mirror image that cameras in each other's places, or mirrored pictures, make of it.
+The rays to a joint must meet (epipolar constraint), in front of both cameras; the triangulated body must have a
+person's size; and its depths must correlate with the depths that the network estimates from each single picture. The
+last condition distinguishes a person from the mirror image that exchanged cameras or mirror_view pictures give.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from mocapd.geometry.camera_model import centre, undistort
 from mocapd.types import Camera, Floats
 from mocapd.vision.heatmaps.joint_network import BODY_JOINTS
 
-CAP_DEG = 5.0  # what is farther off counts as so far
+CAP_DEG = 5.0  # upper bound of errors
 _SURE_CELLS = 1.5
 _NEAR_S = 0.15  # between two of a view's pictures, to interpolate
 _BETWEEN_M = (0.3, 25.0)  # from each camera, where rays may meet
@@ -41,8 +41,8 @@ class PairFit:
 
     angle_deg: median angle between a ray and the other ray's epipolar plane, at most CAP_DEG; front: share of joints that
     lie before both cameras; depth: of each camera, the correlation of depths by triangulation and by its picture alone, NaN
-    where the views say too little; size: of the body, over that of somebody 1.75 m tall; up (3,): from hips to neck;
-    floor_m: height of the lowest feet, NaN where none are seen; parallax_deg: median angle between rays that meet;
+    where the views are too short; size: of the body, relative to a person 1.75 m tall; up (3,): from hips to neck;
+    floor_m: height of the lowest feet, NaN without visible feet; parallax_deg: median angle between rays that meet;
     away_m: median distance of the body from the cameras; count: joints compared.
     """
 
@@ -58,8 +58,10 @@ class PairFit:
 
     @property
     def cost(self) -> float:
-        """Lower is better: degrees, and what speaks of a mirror image."""
-        depth = min((one for one in self.depth if np.isfinite(one)), default=0.0)
+        """Lower is better: degrees, plus a penalty for signs of a mirror image."""
+        depth = min(
+            (correlation for correlation in self.depth if np.isfinite(correlation)), default=0.0
+        )
         # of rays that are nearly parallel depths are noise
         depth = _NO_DEPTH if self.parallax_deg < _LEAST_PARALLAX_DEG else depth
         return self.angle_deg + 0.5 * (1.0 - depth) + (1.0 - self.front)
@@ -68,9 +70,9 @@ class PairFit:
 def fit_pair(
     cameras: tuple[Camera, Camera], views: tuple[PersonView, PersonView], late_s: float = 0.0
 ) -> PairFit | None:
-    """late_s: by how much the second camera's times are too early. None with too little in common."""
+    """late_s: by how much the second camera's times are too early. None for too little common data."""
     first, second = cameras
-    a, b = views[0], resampled(views[1], views[0].times_s - late_s)
+    a, b = views[0], resample_view(views[1], views[0].times_s - late_s)
     both = (a.spread < _SURE_CELLS) & (b.spread < _SURE_CELLS) & np.isfinite(b.px[..., 0])
     count = int(both.sum())
     if count < _LEAST:
@@ -89,23 +91,23 @@ def fit_pair(
     low, high = _BETWEEN_M
     front = (far_a > low) & (far_a < high) & (far_b > low) & (far_b < high)
     off_deg = np.where(front, np.minimum(off_deg, CAP_DEG), CAP_DEG)
-    seen = both & front
+    visible = both & front
     points_m = 0.5 * (at_a + far_a[..., None] * ray_a + at_b + far_b[..., None] * ray_b)
-    points_m = np.where(seen[..., None], points_m, np.nan)
+    points_m = np.where(visible[..., None], points_m, np.nan)
     torso = points_m[:, _NECK] - points_m[:, _HIPS]
     length = np.linalg.norm(torso, axis=-1)
-    known = np.isfinite(length) & (length > 1e-6)
+    measurable = np.isfinite(length) & (length > 1e-6)
     up = np.full(3, np.nan)
     size = np.nan
-    if known.sum() >= 5:
-        up = np.median(torso[known] / length[known, None], axis=0)
-        size = float(np.median(length[known])) / _TORSO_M
+    if measurable.sum() >= 5:
+        up = np.median(torso[measurable] / length[measurable, None], axis=0)
+        size = float(np.median(length[measurable])) / _TORSO_M
     feet = points_m[:, _FEET, 1]
     feet = feet[np.isfinite(feet)]
     floor_m = float(np.percentile(feet, 20)) if len(feet) >= 10 else np.nan
     depth = (_depth(first, a, points_m, size), _depth(second, b, points_m, size))
     parallax_deg = float(np.median(np.degrees(np.arccos(np.clip(np.abs(cosine[both]), 0.0, 1.0)))))
-    away_m = float(np.median(0.5 * (far_a + far_b)[seen])) if seen.any() else np.nan
+    away_m = float(np.median(0.5 * (far_a + far_b)[visible])) if visible.any() else np.nan
     return PairFit(
         float(np.median(off_deg[both])), float(front[both].mean()), depth, size, up, floor_m, parallax_deg, away_m, count
     )  # fmt: skip
@@ -120,7 +122,7 @@ def _rays(camera: Camera, px: Floats) -> Floats:
 
 
 def _depth(camera: Camera, view: PersonView, points_m: Floats, size: float) -> float:
-    """Correlation of how much farther than the hips joints are, as triangulated and as guessed from one picture."""
+    """Correlation of joint depths relative to the hips, triangulated and estimated from one picture."""
     depth_m = (points_m - centre(camera)) @ camera.R[2]
     by_rays = (depth_m - depth_m[:, _HIPS : _HIPS + 1]) / max(size, 1e-3)
     use = np.isfinite(by_rays) & np.isfinite(view.farther_m) & (np.abs(by_rays) < _LARGEST_M)
@@ -132,8 +134,8 @@ def _depth(camera: Camera, view: PersonView, points_m: Floats, size: float) -> f
     return float((x * y).sum() / max(np.sqrt((x * x).sum() * (y * y).sum()), 1e-9))
 
 
-def resampled(view: PersonView, times_s: Floats) -> PersonView:
-    """The view at other times (N,) [s]; NaN and unsure where it has no picture near."""
+def resample_view(view: PersonView, times_s: Floats) -> PersonView:
+    """The view at other times (N,) [s]; NaN and unreliable without a picture near."""
     own = view.times_s
     after = np.clip(np.searchsorted(own, times_s), 1, max(len(own) - 1, 1))
     if len(own) < 2:
@@ -150,15 +152,15 @@ def resampled(view: PersonView, times_s: Floats) -> PersonView:
     return replace(view, times_s=times_s, px=px, spread=spread, farther_m=farther)
 
 
-def thinned(view: PersonView) -> PersonView:
+def thin_view(view: PersonView) -> PersonView:
     """Every second picture of a view."""
     return PersonView(
         view.times_s[::2], view.px[::2], view.spread[::2], view.farther_m[::2], view.quarter_turns
     )
 
 
-def mirrored(view: PersonView, width_px: int) -> PersonView:
-    """What the view would be of the picture's mirror image: left and right change, too."""
+def mirror_view(view: PersonView, width_px: int) -> PersonView:
+    """The view of the picture's mirror image: left and right change, too."""
     px = view.px[:, MIRROR_OF].copy()
     px[..., 0] = width_px - 1 - px[..., 0]
     return replace(
@@ -167,11 +169,11 @@ def mirrored(view: PersonView, width_px: int) -> PersonView:
 
 
 def upside_down(view: PersonView, size_px: tuple[int, int]) -> PersonView:
-    """What the view would be of the picture turned by 180 degrees."""
+    """The view of the picture rotated by 180 degrees."""
     return replace(view, px=np.array([size_px[0] - 1.0, size_px[1] - 1.0]) - view.px)
 
 
-def zoomed(view: PersonView, middle_px: Sequence[float], factor: float) -> PersonView:
-    """What the view would be of the picture made larger about a point."""
+def zoom_view(view: PersonView, middle_px: Sequence[float], factor: float) -> PersonView:
+    """The view of the picture enlarged about a point."""
     middle = np.asarray(middle_px)
     return replace(view, px=(view.px - middle) * factor + middle)

@@ -1,4 +1,4 @@
-"""Whether people stand upright on the floor of a rig's world, and are as large as people."""
+"""Checks whether people stand upright on the floor of a rig's world, and have a person's size."""
 
 from collections.abc import Sequence
 
@@ -27,8 +27,8 @@ _KNOWN_FACTORS = {
     "centimetres": 100.0,
     "millimetres": 1000.0,
 }
-_NEAR = 1.25  # a factor, to be taken for a known one
-_COLUMNS = {  # of R, for the axis that is up in the given world: y up is wanted
+_NEAR = 1.25  # a factor this near to a unit's is that unit
+_COLUMNS = {  # of R, by the up axis of the given world: y up is wanted
     "+z": "(r_x, r_z, -r_y)",
     "-z": "(r_x, -r_z, r_y)",
     "-y": "(r_x, -r_y, -r_z)",
@@ -40,22 +40,22 @@ _COLUMNS = {  # of R, for the axis that is up in the given world: y up is wanted
 def judge_world(
     names: tuple[str, ...], fits: Sequence[PairFit], stature_m: float | None
 ) -> tuple[CaptureFinding, ...]:
-    """Of views that agree, what is implausible about the people that they show."""
+    """Implausible properties of the people in views that agree."""
     wide = [
-        one
-        for one in fits
-        if one.parallax_deg > _PARALLAX_DEG and np.isfinite(one.size) and one.cost < _AGREES
+        fit
+        for fit in fits
+        if fit.parallax_deg > _PARALLAX_DEG and np.isfinite(fit.size) and fit.cost < _AGREES
     ]
     if len(wide) < _LEAST:
         return ()
-    up = np.sum([one.count * one.up for one in wide], axis=0)
+    up = np.sum([fit.count * fit.up for fit in wide], axis=0)
     up /= max(float(np.linalg.norm(up)), 1e-9)
     if up[1] < np.cos(np.radians(_UPRIGHT_DEG)):
-        return (_tilted(names, up),)
-    size = float(np.median([one.size for one in wide])) * STATURE_M / (stature_m or STATURE_M)
+        return (_tilt_finding(names, up),)
+    size = float(np.median([fit.size for fit in wide])) * STATURE_M / (stature_m or STATURE_M)
     if not _SIZES[0] < size < _SIZES[1]:
-        return (_sized(names, size, stature_m),)
-    floors = [one.floor_m for one in wide if np.isfinite(one.floor_m)]
+        return (_size_finding(names, size, stature_m),)
+    floors = [fit.floor_m for fit in wide if np.isfinite(fit.floor_m)]
     if len(floors) > 1 and not _FLOOR_M[0] < float(np.median(floors)) < _FLOOR_M[1]:
         return (
             CaptureFinding(
@@ -68,7 +68,7 @@ def judge_world(
     return ()
 
 
-def _tilted(names: tuple[str, ...], up: Floats) -> CaptureFinding:
+def _tilt_finding(names: tuple[str, ...], up: Floats) -> CaptureFinding:
     k = int(np.abs(up).argmax())
     axis = ("+" if up[k] > 0 else "-") + "xyz"[k]
     if abs(up[k]) > 0.8 and axis in _COLUMNS:
@@ -87,7 +87,7 @@ def _tilted(names: tuple[str, ...], up: Floats) -> CaptureFinding:
     )
 
 
-def _sized(names: tuple[str, ...], size: float, stature_m: float | None) -> CaptureFinding:
+def _size_finding(names: tuple[str, ...], size: float, stature_m: float | None) -> CaptureFinding:
     unit = min(_KNOWN_FACTORS, key=lambda name: abs(np.log(size / _KNOWN_FACTORS[name])))
     tall = f"people are about {size * (stature_m or STATURE_M):.2g} m tall in the rig's world"
     if abs(np.log(size / _KNOWN_FACTORS[unit])) < np.log(_NEAR):
@@ -108,7 +108,7 @@ def _sized(names: tuple[str, ...], size: float, stature_m: float | None) -> Capt
 def turned_views(
     cameras: Sequence[Camera], people: Sequence[Sequence[PersonView]]
 ) -> tuple[CaptureFinding, ...]:
-    """Cameras in whose pictures people do not stand as the rig's vertical is seen there; people: of each camera."""
+    """Cameras in whose pictures people do not stand along the rig's vertical; people: of each camera."""
     out = []
     for camera, views in zip(cameras, people, strict=True):
         turns_deg = [
@@ -116,8 +116,8 @@ def turned_views(
             for view in views
             if len(angles := _lean_deg(camera, view)) >= _LEAST_ANGLES
         ]
-        turned = [one for one in turns_deg if abs(one) > _TURNED_DEG]
-        # who bends down is no turned picture: at other times the same picture is upright
+        turned = [turn_deg for turn_deg in turns_deg if abs(turn_deg) > _TURNED_DEG]
+        # a person who bends down is no rotated picture: at other times the same picture is upright
         if len(turned) < _LEAST or len(turned) < _OFTEN * len(turns_deg):
             continue
         turn_deg = _median_deg(turned)
@@ -139,15 +139,15 @@ def _median_deg(angles_deg: Sequence[float]) -> float:
 
 
 def _lean_deg(camera: Camera, view: PersonView) -> list[float]:
-    """Of each picture, the angle from the world's vertical, as the camera sees it, to the trunk."""
+    """For each picture, the angle from the projected vertical of the world to the trunk."""
     sure = (view.spread[:, _HIPS] < 2.0) & (view.spread[:, _NECK] < 2.0)
     hips, neck = view.px[sure, _HIPS], view.px[sure, _NECK]
     xy = normalised(camera, hips)
     up = camera.R[:, 1]
-    # where a point goes that moves up, at whatever distance
+    # the image direction of a point that moves up, at any distance
     way = up[:2] - xy * up[2]
     trunk = neck - hips
     long = np.linalg.norm(way, axis=1) > 0.3
     angle = np.arctan2(trunk[:, 1], trunk[:, 0]) - np.arctan2(way[:, 1], way[:, 0])
     wrapped = (np.degrees(angle) + 180.0) % 360.0 - 180.0
-    return [float(one) for one in wrapped[long]]
+    return [float(angle_deg) for angle_deg in wrapped[long]]

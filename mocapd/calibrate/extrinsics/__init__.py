@@ -1,1 +1,1 @@
-"""Where the cameras stand, from a board: pose graph, bundle adjustment, world frame."""
+"""Extrinsics from a board: pose graph, bundle adjustment, world frame."""

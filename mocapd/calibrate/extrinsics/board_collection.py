@@ -1,4 +1,4 @@
-"""Sightings of the board, collected live for the extrinsics: whether they suffice, and which cameras share none."""
+"""Collects sightings of the board live for the extrinsics, and decides whether they suffice."""
 
 from collections.abc import Mapping
 
@@ -10,13 +10,13 @@ from mocapd.calibrate.extrinsics.pose_graph import FEWEST_SHARED
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 
 ENOUGH = 10  # sightings in all
-_OWN = 5  # of them new: for the intrinsics the board was held near one camera
+_OWN = 5  # of them new: those of the intrinsics are near one camera
 _SHARED = 4  # of each camera with the others
-_MORE = 3  # sightings before another try
+_MORE = 3  # sightings before another attempt
 
 
 class BoardCollection:
-    """The views of the board by camera and sighting; it begins with those that the intrinsics were measured from."""
+    """The views of the board by camera and sighting, starting with those of the intrinsics."""
 
     def __init__(
         self, sizes_px: Mapping[str, tuple[int, int]], spec: BoardSpec, earlier: Views
@@ -35,27 +35,27 @@ class BoardCollection:
 
     @property
     def count(self) -> int:
-        """Sightings that two cameras or more share."""
+        """Sightings by two cameras or more."""
         return self._sightings.count
 
     @property
     def solvable(self) -> bool:
-        """Whether there is anything to solve from."""
-        return self._sightings.linked(FEWEST_SHARED)
+        """Whether a solution is possible."""
+        return self._sightings.all_connected(FEWEST_SHARED)
 
     @property
     def due(self) -> bool:
-        """Whether there are enough, and more than at the last try."""
+        """Whether there are enough, and more than at the last attempt."""
         enough = (
             self._own >= _OWN
             and self._sightings.count >= ENOUGH
-            and self._sightings.linked(_SHARED)
+            and self._sightings.all_connected(_SHARED)
         )
         return enough and (not self._tried or self._own >= self._tried + _MORE)
 
     @property
     def progress(self) -> float:
-        """0..1, how much of what is enough there is."""
+        """Progress towards enough sightings, 0..1."""
         shares = (
             self._own / _OWN,
             self._sightings.count / ENOUGH,
@@ -68,30 +68,30 @@ class BoardCollection:
         self._own += self._sightings.offer(look)
 
     def try_now(self) -> None:
-        """It is solved from these: the next try needs more."""
+        """Record an attempt with these: the next one needs more."""
         self._tried = self._own
 
-    def still(self, name: str, seen: BoardObservation) -> bool:
+    def still(self, name: str, observation: BoardObservation) -> bool:
         """Whether the board is at rest in this camera."""
-        return self._sightings.still(name, seen)
+        return self._sightings.still(name, observation)
 
     def still_px(self) -> dict[str, float]:
-        """By camera the motion [px per 1/30 s] under which the board is at rest."""
+        """By camera the largest motion of a board at rest [px per 1/30 s]."""
         return self._sightings.still_px()
 
     def apart(self) -> list[str]:
-        """Cameras outside of the largest group that shared sightings link."""
+        """Cameras outside the largest group that common sightings connect."""
         together = self._sightings.largest_group(_SHARED)
         return [name for name in self._cameras if name not in together]
 
     def lonely(self) -> list[str]:
-        """Cameras that share no sighting with any other."""
+        """Cameras without a sighting in common with any other."""
         return [
             name
             for name in self._cameras
-            if not any(self.shared(name, other) for other in self._cameras if other != name)
+            if not any(self.common_count(name, other) for other in self._cameras if other != name)
         ]
 
-    def shared(self, a: str, b: str) -> int:
-        """How many sightings two cameras share."""
-        return self._sightings.shared(a, b)
+    def common_count(self, a: str, b: str) -> int:
+        """The number of common sightings of two cameras."""
+        return self._sightings.common_count(a, b)

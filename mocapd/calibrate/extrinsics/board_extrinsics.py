@@ -1,10 +1,10 @@
-"""The extrinsics from positions of a board that several cameras saw, and how well they fit."""
+"""Solves the extrinsics from board positions that several cameras see, and rates their fit."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import scipy  # its parts when they are used: they take long to import
+import scipy  # its submodules load on first use: they take long to import
 
 from mocapd.calibrate.board.back_side import OFFSET, Gluing, gluing_of, usual_back
 from mocapd.calibrate.board.board_detection import BoardView
@@ -17,13 +17,13 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     with_steps,
 )
 from mocapd.calibrate.extrinsics.bundle_adjustment import Bundle, BundleParams, adjust_bundle
-from mocapd.calibrate.extrinsics.contradictions import contradiction, mirrored
-from mocapd.calibrate.extrinsics.mirrored_pictures import SeenPose, suspect
+from mocapd.calibrate.extrinsics.contradictions import contradiction, mirrored_error
+from mocapd.calibrate.extrinsics.mirrored_pictures import PrintPose, suspect
 from mocapd.calibrate.extrinsics.pose_graph import (
+    board_poses,
     camera_from_board,
     initial_scene,
     observations,
-    seen_poses,
 )
 from mocapd.calibrate.extrinsics.world_frame import (
     PlayAreaError,
@@ -44,7 +44,7 @@ _NINE_IN_TEN = 1.645  # standard deviations, of one direction, which mostly outw
 
 @dataclass(frozen=True, slots=True)
 class BoardExtrinsicsParams:
-    """How it is solved, and what it must reach to be used."""
+    """Parameters of the solution, and requirements for using it."""
 
     bundle: BundleParams = field(default_factory=BundleParams)
     rms_px: float = 2.5
@@ -61,14 +61,14 @@ class SceneExtrinsics:
     sizes_px: tuple[tuple[int, int], ...]
     spec: BoardSpec
     indices: tuple[int, ...]
-    seen: Observations
+    obs: Observations
     bundle: Bundle
 
 
 @dataclass(frozen=True, slots=True)
 class CameraFit:
-    """One camera in the joint solution: error, pictures that it has, delay to the first camera; `place_cm`: how near it
-    is to where it is said to be, seen from the first, in nine of ten cases."""
+    """One camera in the joint solution: error, number of its pictures, delay relative to the first camera; `place_cm`:
+    bound of the error of its position relative to the first, in nine of ten cases."""
 
     rms_px: float
     views: int
@@ -80,8 +80,8 @@ class CameraFit:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorldExtrinsics:
-    """The extrinsics in the world; `note`: what must be said of the floor ("": nothing); `gluing`: of a
-    two-sided board, None where nobody saw the back."""
+    """The extrinsics in the world; `note`: a remark on the floor for the user, perhaps ""; `gluing`: of a two-sided board,
+    None without views of its back."""
 
     rig: Rig
     rms_px: float
@@ -101,14 +101,14 @@ def solve_extrinsics(
     params: BoardExtrinsicsParams,
     lags: Mapping[str, Mapping[int, float]] | None = None,
 ) -> SceneExtrinsics:
-    """All cameras and positions at once; `views[camera][index]`, frames of one index being of one instant, or
+    """Solves all cameras and positions at once; `views[camera][index]`, simultaneous for one index, or
     `lags[camera][index]` [frames] after it.
 
-    Raises ConfigError naming the cameras that share no positions with the others, MirroredError naming
-    what is mirrored.
+    Raises ConfigError naming cameras without positions in common with the others, MirroredError naming
+    mirrored pictures.
     """
     board_m = corners_m(spec)
-    # a view that contradicted its own camera's intrinsics tells nothing of the extrinsics either
+    # a view that contradicts its own camera's intrinsics is an outlier of the extrinsics, too
     trusted = {
         name: {
             i: view for i, view in views[name].items() if i not in intrinsics_of[name].thrown_out
@@ -116,20 +116,20 @@ def solve_extrinsics(
         for name in names
     }
     if spec.two_sided:
-        poses = {name: seen_poses(trusted[name], intrinsics_of[name], board_m) for name in names}
+        poses = {name: board_poses(trusted[name], intrinsics_of[name], board_m) for name in names}
         suspicion = suspect(names, poses, board_m)
         if suspicion is not None:
-            raise mirrored(suspicion)
+            raise mirrored_error(suspicion)
     scene, indices = initial_scene(names, intrinsics_of, trusted, board_m, params.bundle.gluing)
-    seen = observations(names, trusted, indices, board_m, lags)
-    bundle = adjust_bundle(scene, indices, seen, np.array(sizes_px, dtype=float), params.bundle)
-    return SceneExtrinsics(tuple(names), tuple(sizes_px), spec, tuple(indices), seen, bundle)
+    obs = observations(names, trusted, indices, board_m, lags)
+    bundle = adjust_bundle(scene, indices, obs, np.array(sizes_px, dtype=float), params.bundle)
+    return SceneExtrinsics(tuple(names), tuple(sizes_px), spec, tuple(indices), obs, bundle)
 
 
 def lone_camera(
     name: str, size_px: tuple[int, int], intrinsics: Intrinsics, spec: BoardSpec
 ) -> SceneExtrinsics:
-    """One camera and no board yet: what `with_board` then adds gives it a place."""
+    """One camera without a board; `with_board` then adds a position that places it."""
     none = np.zeros(0, np.int64)
     scene = ReprojectionProblem(
         intrinsics_row(intrinsics.K, intrinsics.dist)[None],
@@ -139,21 +139,21 @@ def lone_camera(
         np.zeros((0, 2, POSE)),
         usual_back(corners_m(spec)),
     )
-    seen = Observations(
+    obs = Observations(
         none, none, np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0, bool), np.zeros(0)
     )
     bundle = Bundle(
         scene, np.zeros(0, bool), np.array([intrinsics.focal_deviation]), np.zeros(1), None
     )
-    return SceneExtrinsics((name,), (size_px,), spec, (), seen, bundle)
+    return SceneExtrinsics((name,), (size_px,), spec, (), obs, bundle)
 
 
 def with_board(
     extrinsics: SceneExtrinsics, index: int, views: Mapping[str, BoardView]
 ) -> SceneExtrinsics:
-    """The same with one more position of the board, which moves no camera."""
+    """The same with one more position of the board; the cameras stay."""
     board_m, scene = corners_m(extrinsics.spec), extrinsics.bundle.scene
-    seen = observations(
+    obs = observations(
         extrinsics.names, {n: _only(views, n, index) for n in extrinsics.names}, [index], board_m
     )
     best, best_px = None, np.inf
@@ -163,12 +163,12 @@ def with_board(
         pose = board_pose(view, board_m, camera_matrix(row), row[4:])
         if pose is None:
             continue
-        held = camera_from_board(SeenPose(pose, view.back), scene.back)
+        held = camera_from_board(PrintPose(pose, view.back), scene.back)
         guess = _with(scene, scene.camera_from_scene[i].inverse() @ held)
-        found, error_px = _fit_position(guess, seen)
-        # one camera alone may take the mirror image of a board that it sees small
+        fitted, error_px = _fit_position(guess, obs)
+        # a single camera may choose the mirrored pose of a board that is small in the picture
         if error_px < best_px:
-            best, best_px = found, error_px
+            best, best_px = fitted, error_px
     if best is None:
         raise ConfigError("the board cannot be placed", "the room", "show more of the board")
     both = extrinsics.bundle.scene
@@ -178,16 +178,16 @@ def with_board(
         path=np.concatenate([both.path, best.path]),
     )
     merged = Observations(
-        np.concatenate([extrinsics.seen.camera, seen.camera]),
-        np.concatenate([extrinsics.seen.view, np.full_like(seen.view, len(extrinsics.indices))]),
-        np.concatenate([extrinsics.seen.point_m, seen.point_m]),
-        np.concatenate([extrinsics.seen.pixels, seen.pixels]),
-        np.concatenate([extrinsics.seen.on_back, seen.on_back]),
-        np.concatenate([extrinsics.seen.lag, seen.lag]),
+        np.concatenate([extrinsics.obs.camera, obs.camera]),
+        np.concatenate([extrinsics.obs.view, np.full_like(obs.view, len(extrinsics.indices))]),
+        np.concatenate([extrinsics.obs.point_m, obs.point_m]),
+        np.concatenate([extrinsics.obs.pixels, obs.pixels]),
+        np.concatenate([extrinsics.obs.on_back, obs.on_back]),
+        np.concatenate([extrinsics.obs.lag, obs.lag]),
     )
-    used = np.concatenate([extrinsics.bundle.used, np.ones(len(seen.camera), bool)])
+    used = np.concatenate([extrinsics.bundle.used, np.ones(len(obs.camera), bool)])
     bundle = replace(extrinsics.bundle, scene=scene, used=used)
-    return replace(extrinsics, indices=(*extrinsics.indices, index), seen=merged, bundle=bundle)
+    return replace(extrinsics, indices=(*extrinsics.indices, index), obs=merged, bundle=bundle)
 
 
 def _only(views: Mapping[str, BoardView], name: str, index: int) -> dict[int, BoardView]:
@@ -205,31 +205,31 @@ def _with(scene: ReprojectionProblem, scene_from_board: RigidTransform) -> Repro
 
 
 def _fit_position(
-    scene: ReprojectionProblem, seen: Observations
+    scene: ReprojectionProblem, obs: Observations
 ) -> tuple[ReprojectionProblem, float]:
-    """Its one position fitted, and the root mean square error [px]."""
+    """The fit of the single position, and the root mean square error [px]."""
     cameras = len(scene.delay)
     still = np.zeros((cameras, INTRINSICS)), np.zeros((cameras, POSE))
 
-    def stepped(x: Floats) -> ReprojectionProblem:
+    def at_step(x: Floats) -> ReprojectionProblem:
         return with_steps(scene, *still, x[None], np.zeros(cameras), np.zeros(OFFSET))
 
     solution = scipy.optimize.least_squares(
-        lambda x: residuals_px(stepped(x), seen).ravel(), np.zeros(POSE), x_scale=0.01
+        lambda x: residuals_px(at_step(x), obs).ravel(), np.zeros(POSE), x_scale=0.01
     )
-    found = stepped(solution.x)
-    return found, _rms(np.linalg.norm(residuals_px(found, seen), axis=1))
+    fitted = at_step(solution.x)
+    return fitted, _rms(np.linalg.norm(residuals_px(fitted, obs), axis=1))
 
 
 def place_in_world(
     extrinsics: SceneExtrinsics, floor: int | None, where: str, params: BoardExtrinsicsParams
 ) -> WorldExtrinsics:
-    """The extrinsics in the world of the board that lies on the floor at index `floor`; None: guessed.
+    """The extrinsics in the world of the board that lies on the floor at index `floor`; None: a guess.
 
-    `where` names that picture in an error. Raises ContradictionError, or ConfigError: a focal length is
-    not known well enough, or cameras are under the floor.
+    `where` names that picture in an error. Raises ContradictionError, or ConfigError for an inaccurate focal
+    length, or cameras under the floor.
     """
-    scene, seen = extrinsics.bundle.scene, extrinsics.seen
+    scene, obs = extrinsics.bundle.scene, extrinsics.obs
     if floor is None:
         world = guess_world(scene, corners_m(extrinsics.spec))
     else:
@@ -237,14 +237,14 @@ def place_in_world(
         position = extrinsics.indices.index(floor)
         world = world_on_floor(scene, position, centre_m(spec), where, spec.two_sided)
     rig = rig_in_world(world, scene, extrinsics.names, extrinsics.sizes_px)
-    kept = seen.of(extrinsics.bundle.used)
+    inliers = obs.of(extrinsics.bundle.used)
     deviation = extrinsics.bundle.back_deviation
     cameras = {name: _camera_fit(extrinsics, i) for i, name in enumerate(extrinsics.names)}
-    area = play_area_error(rig, _as_placed(scene, kept))
+    area = play_area_error(rig, _as_placed(scene, inliers))
     place_cm = max(fit.place_cm for fit in cameras.values())
     made = WorldExtrinsics(
         rig,
-        _rms(np.linalg.norm(residuals_px(scene, kept), axis=1)),
+        _rms(np.linalg.norm(residuals_px(scene, inliers), axis=1)),
         cameras,
         len(extrinsics.indices),
         None if area is None else area.with_places(place_cm),
@@ -255,11 +255,11 @@ def place_in_world(
     return made
 
 
-def _as_placed(scene: ReprojectionProblem, seen: Observations) -> Observations:
-    """Corners on the back where they are; those of one corner stay the same to the last digit."""
-    if not seen.on_back.any():
-        return seen
-    return replace(seen, point_m=np.round(placed_m(scene, seen), 9))
+def _as_placed(scene: ReprojectionProblem, obs: Observations) -> Observations:
+    """Observations with corners on the back at their true place; rounded, so that one corner has one place."""
+    if not obs.on_back.any():
+        return obs
+    return replace(obs, point_m=np.round(placed_m(scene, obs), 9))
 
 
 def _rms(error_px: Floats) -> float:
@@ -267,12 +267,12 @@ def _rms(error_px: Floats) -> float:
 
 
 def _camera_fit(extrinsics: SceneExtrinsics, i: int) -> CameraFit:
-    bundle, seen = extrinsics.bundle, extrinsics.seen
-    own = seen.camera == i
-    kept = own & bundle.used
+    bundle, obs = extrinsics.bundle, extrinsics.obs
+    own = obs.camera == i
+    inliers = own & bundle.used
     return CameraFit(
-        _rms(np.linalg.norm(residuals_px(bundle.scene, seen.of(kept)), axis=1)),
-        len(np.unique(seen.view[kept])),
+        _rms(np.linalg.norm(residuals_px(bundle.scene, obs.of(inliers)), axis=1)),
+        len(np.unique(obs.view[inliers])),
         float(bundle.scene.delay[i]),
         float(bundle.focal_deviation[i]),
         100.0 * _NINE_IN_TEN * float(bundle.place_deviation_m[i]),
@@ -286,7 +286,7 @@ def _refuse_bad(
     params: BoardExtrinsicsParams,
     spec: BoardSpec,
 ) -> None:
-    """`area`: without what the places are known to."""
+    """`area`: without the uncertainty of the cameras' positions."""
     far = area is not None and area.median_cm > params.play_area_cm
     if made.rms_px > params.rms_px or far:
         raise contradiction(made.rms_px, area, spec.two_sided)

@@ -1,4 +1,4 @@
-"""Where a recording shows the board, and why it is not seen where it is not."""
+"""Finds the board in a recording, and diagnoses pictures without it."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,14 +10,14 @@ from mocapd.calibrate.board.board_detection import (
     as_grey,
     settle_variant,
 )
+from mocapd.calibrate.board.board_recordings import Recording
 from mocapd.calibrate.board.detection_diagnostics import (
     FIX,
     TELLING,
     diagnose_detection,
+    downscale,
     most_telling,
-    reduced,
 )
-from mocapd.calibrate.board.recordings import Recording
 from mocapd.calibrate.intrinsics.intrinsics import IntrinsicsLimits
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import ConfigError
@@ -25,61 +25,61 @@ from mocapd.types import Bytes
 
 Progress = Callable[[str, int, int], None]
 FEWEST_VIEWS = IntrinsicsLimits().fewest_views
-_PROBES = 6  # pictures per camera that the board's variant is settled with
-_ASKED = 24  # pictures per camera, of those without a board, that may be asked why
+_PROBES = 6  # pictures per camera that decide the board's variant
+_ASKED = 24  # pictures per camera without a board that may be diagnosed
 _ASKED_PX = 1280  # their width at most
 _ASKED_BYTES = 128 << 20  # of them in memory at most
-_SURE = 2  # pictures that agree on a reason which names what is seen: no further one is asked
+_SURE = 2  # pictures with one reason that names another object end the diagnosis
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoardSighting:
-    """What was found in one camera's recording: views by index, and reasons of pictures without.
+    """The board in one camera's recording: views by index, and failures of pictures without.
 
-    `spec` is the board as found: the given one, or a variant of it (inverted, the other layout).
+    `spec` is the board in the recording: the given one, or a variant of it (inverted, the other layout).
     """
 
     recording: Recording
     spec: BoardSpec
     views: Mapping[int, BoardView]
     pictures: int
-    not_seen: tuple[DetectionFailure, ...]
+    failures: tuple[DetectionFailure, ...]
 
     @property
     def variant_note(self) -> str:
-        """How the board found differs from the given one."""
+        """The difference between the board in the recording and the given one."""
         ink = "inverted" if self.spec.inverted else "dark on light"
         layout = "legacy" if self.spec.legacy else "present"
         return f"{self.recording.name}: the board is {ink}, of the {layout} layout, unlike given"
 
 
 class SpreadSample:
-    """Grey pictures of a stream whose length is not known, evenly spread over it; of bounded size."""
+    """Grey pictures evenly spread over a stream of unknown length; bounded in size."""
 
     def __init__(self) -> None:
-        self._kept: list[tuple[int, Bytes]] = []
+        self._sample: list[tuple[int, Bytes]] = []
         self._came = 0
         self._every = 1
 
     def offer(self, index: int, pixels: Bytes) -> None:
-        """The next picture."""
+        """Take the next picture."""
         if self._came % self._every == 0:
-            grey = reduced(as_grey(pixels), _ASKED_PX)
-            if len(self._kept) >= max(2, min(_ASKED, _ASKED_BYTES // grey.nbytes)):
-                self._kept = self._kept[::2]
+            grey = downscale(as_grey(pixels), _ASKED_PX)
+            if len(self._sample) >= max(2, min(_ASKED, _ASKED_BYTES // grey.nbytes)):
+                self._sample = self._sample[::2]
                 self._every *= 2
             if self._came % self._every == 0:
-                self._kept.append((index, grey))
+                self._sample.append((index, grey))
         self._came += 1
 
     def spread(self) -> Iterator[tuple[int, Bytes]]:
-        """Index and grey picture, those first that halve the stream: any few of them lie far apart."""
-        count = len(self._kept)
+        """Index and grey picture in bisection order: the first few of them lie far apart."""
+        count = len(self._sample)
         bits = max(1, (count - 1).bit_length())
         for i in range(1 << bits):
             place = int(f"{i:0{bits}b}"[::-1], 2)
             if place < count:
-                yield self._kept[place]
+                yield self._sample[place]
 
 
 def sight_board(
@@ -89,22 +89,22 @@ def sight_board(
     step = max(1, recording.frames // (stride * _PROBES)) * stride
     probes = [pixels for _, pixels in recording.pictures(step)][:_PROBES]
     spec = settle_variant(spec, probes)
-    sighting, blank = _searched(recording, spec, stride, progress)
+    sighting, blank = _search(recording, spec, stride, progress)
     if len(sighting.views) >= FEWEST_VIEWS:
         return sighting
-    # the pictures above may all have been without the board
+    # the pictures above may all be without the board
     variant = settle_variant(spec, [grey for _, grey in blank.spread()][:_PROBES])
     if variant != spec:
-        sighting, blank = _searched(recording, variant, stride, progress)
+        sighting, blank = _search(recording, variant, stride, progress)
     if len(sighting.views) >= FEWEST_VIEWS:
         return sighting
-    return replace(sighting, not_seen=_reasons(BoardDetector(sighting.spec), blank))
+    return replace(sighting, failures=_reasons(BoardDetector(sighting.spec), blank))
 
 
-def _searched(
+def _search(
     recording: Recording, spec: BoardSpec, stride: int, progress: Progress
 ) -> tuple[BoardSighting, SpreadSample]:
-    """What was found, without reasons, and pictures in which the board was not found."""
+    """The sighting without diagnoses, and pictures without a board."""
     detector = BoardDetector(spec)
     views: dict[int, BoardView] = {}
     blank = SpreadSample()
@@ -122,32 +122,34 @@ def _searched(
 
 
 def _reasons(detector: BoardDetector, blank: SpreadSample) -> tuple[DetectionFailure, ...]:
-    """Why there is no board, picture by picture, until enough of them name the same that is seen instead."""
+    """Diagnoses picture by picture, until enough of them name the same object."""
     most = (
         _ASKED if detector.spec.kind is BoardKind.CHARUCO else _ASKED // 2
-    )  # chessboards take long
+    )  # the search for chessboards is slow
     failures: list[DetectionFailure] = []
     for index, grey in blank.spread():
         failures.append(diagnose_detection(detector, grey, index))
         reason = failures[-1].reason
-        agreed = sum(one.reason is reason for one in failures)
+        agreed = sum(failure.reason is reason for failure in failures)
         if len(failures) == most or (reason in TELLING and agreed == _SURE):
             break
     return tuple(failures)
 
 
 def refuse_unseen(sightings: Sequence[BoardSighting]) -> None:
-    """Raises ConfigError for the first camera that hardly sees the board, with the most telling reason."""
-    for one in sightings:
-        if len(one.views) >= FEWEST_VIEWS:
+    """Raises ConfigError for the first camera with too few views of the board, with the most telling reason."""
+    for sighting in sightings:
+        if len(sighting.views) >= FEWEST_VIEWS:
             continue
-        others = [other.recording.name for other in sightings if len(other.views) > len(one.views)]
-        where = str(one.recording.path)
-        what = f"the board is usable in {len(one.views)} of {one.pictures} pictures"
+        others = [
+            other.recording.name for other in sightings if len(other.views) > len(sighting.views)
+        ]
+        where = str(sighting.recording.path)
+        what = f"the board is usable in {len(sighting.views)} of {sighting.pictures} pictures"
         if others:
             what += f" (it is seen by {', '.join(others)})"
-        if not one.not_seen:
+        if not sighting.failures:
             raise ConfigError(what, where, "show the board in more pictures")
-        failure = most_telling(one.not_seen)
+        failure = most_telling(sighting.failures)
         what += f": {failure.reason}" + (f", {failure.detail}" if failure.detail else "")
         raise ConfigError(what, where, FIX[failure.reason])

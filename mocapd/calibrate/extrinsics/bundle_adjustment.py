@@ -1,18 +1,18 @@
-"""All cameras and board positions solved at once (bundle adjustment; Triggs et al. 2000).
+"""Bundle adjustment of all cameras and board positions (Triggs et al. 2000).
 
-The first camera stays where it is; the board gives the scale. Where the print on the back of a two-sided
-board lies is solved for too, when somebody saw it.
+The first camera is fixed; the board gives the scale. The pose of the print on the back of a two-sided board is an unknown,
+too, if any camera saw it.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import scipy  # its parts when they are used: they take long to import
+import scipy  # its submodules load on first use: they take long to import
 from numpy.typing import NDArray
 
 from mocapd.calibrate.board.back_side import OFFSET, GluingPrior
-from mocapd.calibrate.board.board_motion import board_paths, followed_from_one_side
+from mocapd.calibrate.board.board_motion import board_paths, has_one_neighbour
 from mocapd.calibrate.extrinsics.board_reprojection import (
     POSE,
     Observations,
@@ -30,29 +30,29 @@ from mocapd.calibrate.extrinsics.corner_noise import (
 from mocapd.calibrate.extrinsics.lower_triangles import lower_triangle, solved_lower
 from mocapd.calibrate.extrinsics.solution_covariance import asked_covariances
 from mocapd.calibrate.extrinsics.sparse_least_squares import least_squares_steps
-from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
+from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, MeasuredIntrinsics
 from mocapd.geometry.reprojection import INTRINSICS
 from mocapd.geometry.rotation_matrices import cross_matrices
 from mocapd.types import Floats, Ints
 
-_FOLLOWED = 2.0  # longest gap [frames] from which on the board's motion is followed
+_FOLLOWED = 2.0  # longest gap [frames] for estimating the board's motion
 _HELD_FOCAL, _HELD_MIDDLE, _HELD_DIST = 0.02, 0.006, (0.05, 0.1, 0.002, 0.002, 0.1)
-_STRETCH = 5  # positions next to each other, whose errors may be of one cause
+_STRETCH = 5  # successive positions, whose errors may have a common cause
 
 
 @dataclass(frozen=True, slots=True)
 class BundleParams:
-    """How the sum of errors is made robust, and when it is small enough."""
+    """Robustness and termination."""
 
-    corner_px: float = 1.0  # deviation of a corner as first assumed; then it is measured,
-    least_corner_px: float = 0.1  # and is never below this
-    outlier_sigmas: float = 5.0  # a corner is dropped above so many robust deviations,
-    least_outlier_px: float = 1.5  # but never below this
-    delay_frames: float = 0.3  # deviation of a camera's delay, before it is known
-    rounds: int = 2  # of the board's motion, taken from the solution before, at least,
-    most_rounds: int = 4  # until the delays are settled
+    corner_px: float = 1.0  # initial deviation of a corner; later rounds measure it,
+    least_corner_px: float = 0.1  # with this lower bound
+    outlier_sigmas: float = 5.0  # a corner with more robust deviations is an outlier,
+    least_outlier_px: float = 1.5  # if it has more than this, too
+    delay_frames: float = 0.3  # prior deviation of a camera's delay
+    rounds: int = 2  # of the board's motion, from the solution before, at least,
+    most_rounds: int = 4  # until the delays converge
     settled_frames: float = 0.01
-    longest_gap: float = 1.5  # between positions that the motion is taken from [frames]
+    longest_gap: float = 1.5  # between positions for estimating the motion [frames]
     evaluations: int = 15
     priors: IntrinsicsPriors = field(default_factory=IntrinsicsPriors)
     gluing: GluingPrior = field(default_factory=GluingPrior)
@@ -60,11 +60,11 @@ class BundleParams:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Bundle:
-    """The solution, and which of the observations (N,) it is computed from.
+    """The solution, and the mask of its inlier observations (N,).
 
-    `focal_deviation` (C,): standard deviation of each focal length, as a part of it; `place_deviation_m` (C,): of
-    where each camera is, seen from the first; `back_deviation` (4,): of how the back of the board lies, None where
-    nobody saw it.
+    `focal_deviation` (C,): standard deviation of each focal length, relative to it; `place_deviation_m` (C,): of each
+    camera's position relative to the first; `back_deviation` (4,): of the back's offset, None without views of the
+    back.
     """
 
     scene: ReprojectionProblem
@@ -76,24 +76,24 @@ class Bundle:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Problem:
-    """Residuals and their sparse slope, in standard deviations, as functions of the steps."""
+    """Residuals and their sparse Jacobian, in standard deviations, as functions of the steps."""
 
     scene: ReprojectionProblem
-    seen: Observations
+    obs: Observations
     corner_px: Floats  # (N,): standard deviations
     size_px: Floats
     params: BundleParams
 
     @property
     def columns(self) -> int:
-        """Intrinsics, cameras but the first, boards, delays but the first, the back if it was seen."""
+        """Intrinsics, cameras but the first, boards, delays but the first, the back if observed."""
         cameras, boards = len(self.scene.delay), len(self.scene.path)
         return cameras * INTRINSICS + (cameras - 1) * (POSE + 1) + boards * POSE + self.of_back
 
     @property
     def of_back(self) -> int:
         """Parameters of the back's print."""
-        return OFFSET if self.seen.on_back.any() else 0
+        return OFFSET if self.obs.on_back.any() else 0
 
     def steps(self, x: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         """Intrinsics (C,9), cameras (C,6), boards (V,6), delay (C,) and back (4,) of a vector of parameters."""
@@ -116,7 +116,7 @@ class _Problem:
         gluing = self.params.gluing
         return np.concatenate(
             [
-                (residuals_px(scene, self.seen) / self.corner_px[:, None]).ravel(),
+                (residuals_px(scene, self.obs) / self.corner_px[:, None]).ravel(),
                 priors.ravel(),
                 scene.delay[1:] / self.params.delay_frames,
                 ((scene.back.offset - gluing.mean) / gluing.deviation)[: self.of_back],
@@ -127,7 +127,7 @@ class _Problem:
         """d error by x."""
         intrinsics, cameras, boards, delay, back = self.steps(x)
         scene = with_steps(self.scene, intrinsics, cameras, boards, delay, back)
-        values = np.concatenate(jacobians(scene, self.seen, cameras, boards), axis=2)
+        values = np.concatenate(jacobians(scene, self.obs, cameras, boards), axis=2)
         values /= self.corner_px[:, None, None]
         columns = np.broadcast_to(self._columns()[:, None, :], values.shape)
         rows = np.arange(2 * len(values)).reshape(-1, 2, 1)
@@ -149,12 +149,12 @@ class _Problem:
         return scipy.sparse.vstack([corners, own]).tocsr()
 
     def _columns(self) -> Ints:
-        """(N, 9+6+6+1+4): what each observation depends on; -1: stays as it is."""
+        """(N, 9+6+6+1+4): the parameters of each observation; -1: fixed."""
         place: Floats = np.arange(1, self.columns + 1, dtype=float)
         parts = [part.astype(np.int64) - 1 for part in self.steps(place)]
         intrinsics, cameras, boards, delay, back = parts
-        camera, view = self.seen.camera, self.seen.view
-        behind = np.where(self.seen.on_back[:, None], back, -1)
+        camera, view = self.obs.camera, self.obs.view
+        behind = np.where(self.obs.on_back[:, None], back, -1)
         return np.concatenate(
             [intrinsics[camera], cameras[camera], boards[view], delay[camera, None], behind], axis=1
         )
@@ -163,92 +163,91 @@ class _Problem:
 def adjust_bundle(
     scene: ReprojectionProblem,
     indices: Sequence[int],
-    seen: Observations,
+    obs: Observations,
     size_px: Floats,
     params: BundleParams | None = None,
 ) -> Bundle:
-    """The scene that fits the observations best: intrinsics, cameras, boards and delays.
+    """The best fit of the scene to the observations: intrinsics, cameras, boards and delays.
 
-    `indices` (V,): the frame of each board position; `size_px` (C,2): of the pictures. First
-    robustly and as if all cameras exposed at once, then with their delays, at last without the
-    outliers.
+    `indices` (V,): the frame of each board position; `size_px` (C,2): of the pictures. First a robust solution with
+    simultaneous exposures, then one with delays, at last without the outliers.
     """
     params = params or BundleParams()
-    one_sided = followed_from_one_side(indices, params.longest_gap)
-    corner_px = np.full(len(seen.camera), params.corner_px)
+    one_sided = has_one_neighbour(indices, params.longest_gap)
+    corner_px = np.full(len(obs.camera), params.corner_px)
     if params.longest_gap >= _FOLLOWED:
-        corner_px = usual_deviations_px(scene, seen, params.corner_px)
-    gentle = params if params.priors.known else _held_lenses(scene, size_px, params)
-    scene = _solve(_Problem(scene, seen, corner_px, size_px, gentle), robust=True)
-    every = np.ones(len(seen.camera), bool)
+        corner_px = usual_deviations_px(scene, obs, params.corner_px)
+    gentle = params if params.priors.measured else _held_lenses(scene, size_px, params)
+    scene = _solve(_Problem(scene, obs, corner_px, size_px, gentle), robust=True)
+    every = np.ones(len(obs.camera), bool)
     for done in range(params.most_rounds):
         before = scene.delay
-        scene = _moved(_Problem(scene, seen, corner_px, size_px, gentle), indices, every)
+        scene = _solve_moving(_Problem(scene, obs, corner_px, size_px, gentle), indices, every)
         settled = np.abs(scene.delay - before).max(initial=0.0) < params.settled_frames
         if done + 1 >= params.rounds and settled:
             break
     for _ in range(2 if gentle is not params else 0):
-        right = ~in_wrong_views(scene, seen, _deviation_px(scene, seen, one_sided, params))
-        scene = _moved(_Problem(scene, seen, corner_px, size_px, params), indices, right)
-    corner_px = corner_deviations_px(scene, seen, params.least_corner_px)
-    error_px = np.linalg.norm(residuals_px(scene, seen), axis=1)
+        right = ~in_wrong_views(scene, obs, _deviation_px(scene, obs, one_sided, params))
+        scene = _solve_moving(_Problem(scene, obs, corner_px, size_px, params), indices, right)
+    corner_px = corner_deviations_px(scene, obs, params.least_corner_px)
+    error_px = np.linalg.norm(residuals_px(scene, obs), axis=1)
     used = error_px <= np.maximum(params.outlier_sigmas * corner_px, params.least_outlier_px)
-    corner_px = np.hypot(corner_px, motion_deviations_px(scene, seen, one_sided))
+    corner_px = np.hypot(corner_px, motion_deviations_px(scene, obs, one_sided))
     if params.longest_gap >= _FOLLOWED:
-        used &= ~in_wrong_views(scene, seen, corner_px)
-    problem = _Problem(scene, seen.of(used), corner_px[used], size_px, params)
+        used &= ~in_wrong_views(scene, obs, corner_px)
+    problem = _Problem(scene, obs.of(used), corner_px[used], size_px, params)
     scene = _solve(problem, robust=False)
     return Bundle(scene, used, *_deviations(replace(problem, scene=scene)))
 
 
 def _deviation_px(
     scene: ReprojectionProblem,
-    seen: Observations,
+    obs: Observations,
     one_sided: NDArray[np.bool_],
     params: BundleParams,
 ) -> Floats:
-    """(N,): one deviation for all corners - as long as delays are not settled, what moves is off for that reason - and
+    """(N,): one deviation for all corners, since errors of unconverged delays look like errors of moving corners; plus
     that of the motion."""
-    usual_px = usual_deviations_px(scene, seen, params.least_corner_px)
-    return np.hypot(usual_px, motion_deviations_px(scene, seen, one_sided))
+    usual_px = usual_deviations_px(scene, obs, params.least_corner_px)
+    return np.hypot(usual_px, motion_deviations_px(scene, obs, one_sided))
 
 
-def _moved(
+def _solve_moving(
     problem: _Problem, indices: Sequence[int], right: NDArray[np.bool_]
 ) -> ReprojectionProblem:
-    """Solved from the observations (N,) that are right, along the motion of the board in the solution before."""
-    scene, seen, params = problem.scene, problem.seen, problem.params
-    placed = np.unique(seen.view[right])
+    """The solution from the inlier observations (N,), with the board's motion of the previous solution."""
+    scene, obs, params = problem.scene, problem.obs, problem.params
+    placed = np.unique(obs.view[right])
     numbers = [indices[v] for v in placed.tolist()]
     boards = replace(scene, scene_from_board=scene.scene_from_board[placed])
     path = np.zeros_like(scene.path)
     path[placed] = board_paths(boards, numbers, params.longest_gap)
     one_sided = np.ones(len(indices), bool)
-    one_sided[placed] = followed_from_one_side(numbers, params.longest_gap)
+    one_sided[placed] = has_one_neighbour(numbers, params.longest_gap)
     scene = replace(scene, path=path)
-    corner_px = _deviation_px(scene, seen, one_sided, params)
+    corner_px = _deviation_px(scene, obs, one_sided, params)
     return _solve(
-        _Problem(scene, seen.of(right), corner_px[right], problem.size_px, params), robust=True
+        _Problem(scene, obs.of(right), corner_px[right], problem.size_px, params), robust=True
     )
 
 
 def _held_lenses(scene: ReprojectionProblem, size_px: Floats, params: BundleParams) -> BundleParams:
-    """Lenses near those that were solved alone, as long as the motion is not known: pictures out of time would bend
-    them, and the way back is long."""
+    """Intrinsics near their separate solutions while the motion is unknown: pictures with time errors would distort them,
+    and convergence back is slow."""
     if params.longest_gap < _FOLLOWED:
         return params
-    known = scene.intrinsics
-    deviation = np.empty_like(known)
-    deviation[:, :2] = _HELD_FOCAL * known[:, :2]
+    lenses = scene.intrinsics
+    deviation = np.empty_like(lenses)
+    deviation[:, :2] = _HELD_FOCAL * lenses[:, :2]
     deviation[:, 2:4] = _HELD_MIDDLE * size_px[:, :1]
     deviation[:, 4:] = _HELD_DIST
     return replace(
-        params, priors=replace(params.priors, known=KnownIntrinsics(known.copy(), deviation))
+        params, priors=replace(params.priors, measured=MeasuredIntrinsics(lenses.copy(), deviation))
     )
 
 
 def _solve(problem: _Problem, robust: bool) -> ReprojectionProblem:
-    """robust: far corners count less and less, but of a recording in motion no prior does."""
+    """robust: distant corners weigh less; but for a recording in motion no prior is robust."""
     if problem.params.longest_gap < _FOLLOWED:
         return _solve_at_rest(problem, robust)
     corners = 2 * len(problem.corner_px) if robust else 0
@@ -259,12 +258,12 @@ def _solve(problem: _Problem, robust: bool) -> ReprojectionProblem:
 
 
 def _solve_at_rest(problem: _Problem, robust: bool) -> ReprojectionProblem:
-    """Positions one by one, often few and with an initial scene that is far off: trust regions find the way from
-    there, which damping alone does not.
+    """Separate positions, often few and with a poor initial scene: trust regions converge from there, damping alone does
+    not.
 
     Solved in steps y with x = inv(L^T) y, L L^T being the normal matrix at the start.
 
-    In these the problem is nearly round, and LSMR ends after a few iterations; in x it takes hundreds
+    In these the problem is nearly isotropic, and LSMR ends after a few iterations; in x it takes hundreds
     along the valleys of focal length and depth.
     """
     start = problem.slope(np.zeros(problem.columns))
@@ -297,8 +296,8 @@ def _solve_at_rest(problem: _Problem, robust: bool) -> ReprojectionProblem:
 
 
 def _deviations(problem: _Problem) -> tuple[Floats, Floats, Floats | None]:
-    """Of the focal lengths (C,), as parts of them, of the cameras' places (C,) [m], and of the back (4,)."""
-    scene, seen = problem.scene, problem.seen
+    """Of the focal lengths (C,), relative, of the cameras' positions (C,) [m], and of the back's offset (4,)."""
+    scene, obs = problem.scene, problem.obs
     cameras = len(scene.delay)
     at_rest = np.zeros(problem.columns)
     J = problem.slope(at_rest)
@@ -311,7 +310,7 @@ def _deviations(problem: _Problem) -> tuple[Floats, Floats, Floats | None]:
             *range(problem.columns - problem.of_back, problem.columns),
         ]
     )
-    stretch = np.repeat(seen.view // _STRETCH, 2)
+    stretch = np.repeat(obs.view // _STRETCH, 2)
     usual, covariance = asked_covariances(J, error, stretch, asked)
     deviation = np.sqrt(np.diag(usual))
     focal: Floats = deviation[:cameras] / scene.intrinsics[:, 0]

@@ -1,4 +1,4 @@
-"""What is said of cameras that do not fit together, and of what would make them fit."""
+"""Errors about cameras that do not fit together, with remedies."""
 
 from mocapd.calibrate.extrinsics.mirrored_pictures import Suspicion
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
@@ -10,13 +10,13 @@ class ContradictionError(ConfigError):
 
 
 class MirroredError(ContradictionError):
-    """They would fit if the pictures of a camera, or the back of the board, were turned round."""
+    """They would fit if the pictures of a camera, or the back of the board, were mirrored back."""
 
 
 def contradiction(
     rms_px: float, play_area: PlayAreaError | None, two_sided: bool
 ) -> ContradictionError:
-    """Of cameras that fit so badly."""
+    """The error for cameras that fit this badly."""
     cm = "" if play_area is None else f", {play_area.median_cm:.1f} cm in the play area"
     second_page = "; the back of the board must be the second page, whose markers are mirrored"
     return ContradictionError(
@@ -28,18 +28,18 @@ def contradiction(
     )
 
 
-def mirrored(told: Suspicion) -> MirroredError:
-    """Of the cameras, or the back, that are suspected."""
-    if told.upside_down:
+def mirrored_error(suspicion: Suspicion) -> MirroredError:
+    """The error for suspected cameras, or a suspected back."""
+    if suspicion.upside_down:
         return MirroredError(
             "the back is upside down to the front, turned by 180 degrees",
             "the board",
             "glue it on so that each cross lies behind the cross with its own letter",
         )
-    names = ", ".join(told.mirrored)
-    either = f", or else those of {', '.join(told.others)}," if told.others else ""
+    names = ", ".join(suspicion.mirrored)
+    either = f", or else those of {', '.join(suspicion.others)}," if suspicion.others else ""
     return MirroredError(
         f"the pictures{either} are mirrored: the others contradict them, and agree once they are turned round",
         names,
-        "switch mirroring off in the camera or the recorder, and show the board anew, also for the lens",
+        "switch mirroring off in the camera or the recorder, and show the board again, also for the lens",
     )

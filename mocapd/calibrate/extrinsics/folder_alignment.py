@@ -1,4 +1,4 @@
-"""The pictures with the board of a folder of recordings, gathered by instant."""
+"""Groups the pictures with the board of a folder of recordings by instant."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,28 +7,28 @@ import numpy as np
 
 from mocapd.calibrate.board.back_side import usual_back
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.board.recordings import RecordingTimes
-from mocapd.calibrate.extrinsics.pose_graph import camera_from_board, seen_poses
+from mocapd.calibrate.board.board_recordings import RecordingTimes
+from mocapd.calibrate.extrinsics.pose_graph import board_poses, camera_from_board
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.time_alignment.board_track import BoardTrack, board_track
 from mocapd.calibrate.time_alignment.instants import IN_STEP, Instants, gather
 from mocapd.calibrate.time_alignment.time_alignment import AlignedTimes, align_times
 from mocapd.types import Floats
 
-_FOLLOWED_GAP = 2.6  # instants between positions that the board's motion is taken from
+_FOLLOWED_GAP = 2.6  # instants between positions for estimating the board's motion
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AlignedViews:
-    """`longest_gap` [instants]: between positions from which the board's motion can be taken."""
+    """`longest_gap` [instants]: between positions for estimating the board's motion."""
 
     instants: Instants
     times: AlignedTimes
     longest_gap: float
 
     def delay_frames(self, name: str, first: str, delay: float) -> float:
-        """How much later a camera exposes than `first` in pictures of one stamp [its frames], with the `delay`
-        [instants] that the joint solution finds."""
+        """How much later a camera exposes than `first` in pictures of one stamp [its frames], given the `delay`
+        [instants] of the joint solution."""
         later_s = float(self.times.maps[first].offset_s[0] - self.times.maps[name].offset_s[0])
         return (later_s + delay * self.instants.period_s) / self.times.period_s[name]
 
@@ -43,15 +43,15 @@ def align_views(
     """`views[camera][index]` by instant, at most so many instants. Raises ConfigError, see `align_times`."""
     stamps_s, tracks = {}, {}
     for name, own in views.items():
-        known = clocks[name].stamps_s
-        # a frame after the last stamp: the file was read a little farther than its stamps
-        stamps_s[name] = {i: known[i] for i in own if i in known}
+        stamps = clocks[name].stamps_s
+        # a video may have one more frame than stamps
+        stamps_s[name] = {i: stamps[i] for i in own if i in stamps}
         tracks[name] = _track(own, stamps_s[name], intrinsics_of[name], clocks[name], board_m)
     times = align_times(tracks, stamps_s)
     followed = any(track.followed for track in tracks.values())
     period_s = max(track.step_s for track in tracks.values())
     start_s = min(clocks[times.reference].stamps_s.values())
-    # parts of a frame show only where motion is followed
+    # parts of a frame matter only in motion
     in_step = all(t.followed for t in tracks.values()) and times.farthest_s < IN_STEP * period_s
     instants = gather(views, times.times_s, period_s, start_s, most, in_step)
     return AlignedViews(instants, times, _FOLLOWED_GAP if followed else 1.5)
@@ -67,7 +67,7 @@ def _track(
     back = usual_back(board_m)
     poses = {
         index: camera_from_board(pose, back)
-        for index, pose in seen_poses(
+        for index, pose in board_poses(
             {i: view for i, view in views.items() if i in stamps_s}, intrinsics, board_m
         ).items()
     }
@@ -75,7 +75,7 @@ def _track(
     outline_m = np.array(
         [[x, y, 0.0] for y in (low[1], high[1]) for x in (low[0], high[0])], dtype=float
     )
-    # the pictures that were looked at, of which some show no board: pictures of a folder are one position each
+    # the examined pictures, of which some show no board: pictures of a folder are one position each
     every = int(np.gcd.reduce(np.diff(sorted(stamps_s)))) if len(stamps_s) > 1 else 1
     step_s = every * clock.period_s
     focal_px = float(np.mean(np.diag(intrinsics.K)[:2]))

@@ -1,11 +1,11 @@
-"""From a folder of recordings of a board to a rig: intrinsics, extrinsics, and what was refused on the way."""
+"""Calibrates a rig from a folder of recordings of a board: intrinsics, extrinsics, and the outliers."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from mocapd.calibrate.board.back_side import Gluing, gluing_trouble
-from mocapd.calibrate.board.recordings import Recording, RecordingTimes, find_recordings
+from mocapd.calibrate.board.board_recordings import Recording, RecordingTimes, find_recordings
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     BoardExtrinsicsParams,
     CameraFit,
@@ -22,23 +22,23 @@ from mocapd.calibrate.extrinsics.folder_alignment import align_views
 from mocapd.calibrate.extrinsics.lens_check import refuse_contradicted_lenses
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
-from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered
+from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered_share
 from mocapd.calibrate.time_alignment.instants import Instants
 from mocapd.calibrate.time_alignment.time_alignment import TIME_FIX, AlignedTimes
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.types import Floats, Rig
 
-# One camera alone may leave its focal length open where all together then settle it.
+# A single camera may leave its focal length open where all together then determine it.
 _ALONE = IntrinsicsLimits(focal_deviation=0.25)
 
 
 @dataclass(frozen=True, slots=True)
 class FolderParams:
-    """How much of the recordings is looked at, and how the extrinsics are solved."""
+    """How much of the recordings to examine, and parameters of the extrinsics."""
 
-    most_pictures: int = 200  # instants that the extrinsics are solved from
-    densely: int = 3  # times as many are looked at, for the board's motion,
+    most_pictures: int = 200  # instants for the extrinsics
+    densely: int = 3  # times as many are examined, for the board's motion,
     least_hz: float = 10.0  # and of long recordings so many a second
     choice: Choice = field(default_factory=Choice)
     extrinsics: BoardExtrinsicsParams = field(default_factory=BoardExtrinsicsParams)
@@ -48,8 +48,8 @@ class FolderParams:
 class CameraReport:
     """One camera: `rms_px` in the joint solution, `held_out_px` of its intrinsics, `views` in the joint solution,
     `backs` of the pictures show the board's back, `no_board` of them no board. `delay_frames`: how much later than the
-    first camera it exposes pictures of one stamp, at first where frames are lost; `place_cm`: how near it is to where
-    it is said to be."""
+    first camera it exposes pictures of one stamp, at first where frames are lost; `place_cm`: bound of the error of its
+    position."""
 
     rms_px: float
     held_out_px: float
@@ -67,7 +67,7 @@ class CameraReport:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FolderCalibration:
-    """The rig, how well it fits, and the board as it was found to be; `gluing`: of a two-sided one."""
+    """The rig, its fit, and the board in the recordings; `gluing`: of a two-sided one."""
 
     rig: Rig
     rms_px: float
@@ -88,8 +88,8 @@ def calibrate_folder(
 ) -> FolderCalibration:
     """The rig of the cameras that recorded `folder`. `floor_frame`: index at which the board lies on the floor.
 
-    Raises InputError (recordings missing or damaged) or ConfigError: what of the board, a camera or
-    the extrinsics do not fit, and what to do.
+    Raises InputError (recordings missing or damaged) or ConfigError, which says what of the board, a camera or the
+    extrinsics does not fit, and a remedy.
     """
     params = params or FolderParams()
     recordings = find_recordings(folder)
@@ -101,7 +101,7 @@ def calibrate_folder(
         )
     notes: list[str] = []
     sightings = []
-    clocks = {one.name: one.stamps() for one in recordings}
+    clocks = {recording.name: recording.stamps() for recording in recordings}
     stride = _stride(recordings, clocks, params)
     for recording in recordings:
         sighting = sight_board(recording, spec, stride, progress)
@@ -121,14 +121,14 @@ def calibrate_sightings(
     params: FolderParams | None = None,
     notes: Sequence[str] = (),
 ) -> FolderCalibration:
-    """The rig of cameras whose boards are found; `clocks[camera]`: when their frames were taken. Raises ConfigError."""
+    """The rig of cameras with sightings of the board; `clocks[camera]`: times of their frames. Raises ConfigError."""
     params = params or FolderParams()
     refuse_unseen(sightings)
     board_m = corners_m(spec)
     intrinsics_of = {}
-    for done, one in enumerate(sightings):
+    for done, sighting in enumerate(sightings):
         progress("lenses", done, len(sightings))
-        intrinsics_of[one.recording.name] = _solve_camera(one, board_m, params)
+        intrinsics_of[sighting.recording.name] = _solve_camera(sighting, board_m, params)
     progress("lenses", len(sightings), len(sightings))
     return _solve_rig(
         sightings, intrinsics_of, clocks, spec, floor_frame, params, list(notes), progress
@@ -138,9 +138,9 @@ def calibrate_sightings(
 def _stride(
     recordings: Sequence[Recording], clocks: Mapping[str, RecordingTimes], params: FolderParams
 ) -> int:
-    """Every which frame is looked at: between neighbours the board must not go far."""
+    """The stride of examined frames: between neighbours the board must not go far."""
     most = params.densely * params.most_pictures
-    even = -(-max(len(clocks[one.name].stamps_s) for one in recordings) // most)
+    even = -(-max(len(clocks[recording.name].stamps_s) for recording in recordings) // most)
     slowest_s = max(clock.period_s for clock in clocks.values())
     return max(1, min(even, int(1.0 / (params.least_hz * slowest_s))))
 
@@ -161,21 +161,21 @@ def _solve_rig(
     notes: list[str],
     progress: Progress,
 ) -> FolderCalibration:
-    names = [one.recording.name for one in sightings]
+    names = [sighting.recording.name for sighting in sightings]
     progress("room", 0, 1)
-    # a view that contradicted its own camera's intrinsics tells nothing of time and room either
+    # a view that contradicts its own camera's intrinsics is an outlier of time and room, too
     views = {
-        one.recording.name: {
+        sighting.recording.name: {
             i: view
-            for i, view in one.views.items()
-            if i not in intrinsics_of[one.recording.name].thrown_out
+            for i, view in sighting.views.items()
+            if i not in intrinsics_of[sighting.recording.name].thrown_out
         }
-        for one in sightings
+        for sighting in sightings
     }
     aligned = align_views(views, intrinsics_of, clocks, corners_m(spec), params.most_pictures)
     instants = aligned.instants
     floor = None if floor_frame is None else _floor_instant(instants, floor_frame)
-    sizes_px = [one.recording.size_px for one in sightings]
+    sizes_px = [sighting.recording.size_px for sighting in sightings]
     bundle = replace(params.extrinsics.bundle, longest_gap=aligned.longest_gap)
     extrinsics = solve_extrinsics(
         names,
@@ -200,15 +200,17 @@ def _solve_rig(
     elif spec.two_sided:
         notes.append("no camera saw the back of the board, which was said to be two-sided")
     reports = {
-        one.recording.name: _report(
-            one,
-            intrinsics_of[one.recording.name],
-            made.cameras[one.recording.name],
+        sighting.recording.name: _report(
+            sighting,
+            intrinsics_of[sighting.recording.name],
+            made.cameras[sighting.recording.name],
             aligned.delay_frames(
-                one.recording.name, names[0], made.cameras[one.recording.name].delay_frames
+                sighting.recording.name,
+                names[0],
+                made.cameras[sighting.recording.name].delay_frames,
             ),
         )
-        for one in sightings
+        for sighting in sightings
     }
     return FolderCalibration(
         made.rig,
@@ -223,7 +225,7 @@ def _solve_rig(
 
 
 def _out_of_time(error: ConfigError, times: AlignedTimes) -> ConfigError:
-    """The same, with the trouble in the cameras' times that may be its cause."""
+    """The same, with the errors of the cameras' times that may be its cause."""
     said = "; ".join(times.troubles())
     if not said:
         return error
@@ -236,11 +238,11 @@ def _floor_instant(instants: Instants, floor_frame: int) -> int:
     """Of the picture in which the board lies on the floor. Raises ConfigError."""
     floor = instants.of_picture(floor_frame)
     if floor is None:
-        known = sorted({index for own in instants.source.values() for index in own.values()})
+        available = sorted({index for own in instants.source.values() for index in own.values()})
         raise ConfigError(
             "no camera sees the board in it",
             f"--floor-frame {floor_frame}",
-            f"one of the frames with the board, such as {known[len(known) // 2]}",
+            f"one of the frames with the board, such as {available[len(available) // 2]}",
         )
     return floor
 
@@ -255,7 +257,7 @@ def _report(
         sum(view.back for view in one.views.values()),
         one.pictures,
         one.pictures - len(one.views),
-        covered(list(one.views.values()), one.recording.size_px),
+        covered_share(list(one.views.values()), one.recording.size_px),
         delay_frames,
         fit.focal_deviation,
         fit.place_cm,

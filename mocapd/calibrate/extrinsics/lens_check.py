@@ -1,4 +1,4 @@
-"""Lenses in the joint solution against the same lenses solved alone, which no error of time can touch."""
+"""Compares lenses in the joint solution with separate solutions, which time errors cannot affect."""
 
 from collections.abc import Mapping
 
@@ -13,7 +13,7 @@ _LEAST = 0.03  # part of the focal length that lens models differ by anyway
 
 
 def refuse_contradicted_lenses(rig: Rig, alone: Mapping[str, Intrinsics]) -> None:
-    """Raises ConfigError for the camera whose focal length the room contradicts most."""
+    """Raises ConfigError for the camera with the largest contradiction of focal lengths."""
     worst: tuple[float, str] | None = None
     for camera in rig.cameras:
         intrinsics = alone[camera.name]

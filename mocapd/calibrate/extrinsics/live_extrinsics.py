@@ -1,4 +1,4 @@
-"""The extrinsics of a live setup, from the board at rest before its cameras."""
+"""Solves the extrinsics of a live setup from the board at rest before its cameras."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -17,18 +17,18 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
 from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
 from mocapd.calibrate.extrinsics.contradictions import ContradictionError, MirroredError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
-from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, KnownIntrinsics
+from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, MeasuredIntrinsics
 from mocapd.calibrate.intrinsics.views import Choice, choose_views
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import intrinsics_row
 
-# positions are never of neighbouring frames, so no motion is followed: one round is enough
+# positions are never of neighbouring frames, so there is no motion: one round is enough
 PARAMS = BoardExtrinsicsParams(bundle=BundleParams(rounds=1))
 _ALONE = Choice(most=12)  # pictures of one camera alone, for its intrinsics
-_OWN_VIEWS = 8  # with fewer pictures its intrinsics are taken as they were measured before
-_MOST_REFUSED = 0.15  # of the corners; above, the cameras have been moved between the steps
-# Deviations of intrinsics that were measured before: of the middle [picture widths] and of k1 k2 p1 p2 k3.
+_OWN_VIEWS = 8  # with fewer pictures its earlier intrinsics count
+_MOST_REFUSED = 0.15  # of the corners; with more, the cameras have moved between the steps
+# Deviations of earlier intrinsics: of the middle [picture widths] and of k1 k2 p1 p2 k3.
 _MIDDLE = 0.004
 _DIST = (0.02, 0.05, 0.001, 0.001, 0.05)
 
@@ -39,17 +39,17 @@ def solve_live(
     views: Views,
     earlier: frozenset[int],
 ) -> tuple[SceneExtrinsics, WorldExtrinsics]:
-    """The extrinsics of the cameras of `intrinsics_of`, in its order, and the world without a known floor.
+    """The extrinsics of the cameras of `intrinsics_of`, in its order, and a guess of the world.
 
-    views: by camera and index of the sighting; earlier: indices of the sightings that the intrinsics were measured
-    from. Where these contradict the others, somebody may have moved a camera since: the second solution ties no
-    cameras by them. Raises ConfigError.
+    views: by camera and index of the sighting; earlier: indices of the sightings from the intrinsics step. Where these
+    contradict the others, a camera may have moved since: the second solution does not use them between cameras.
+    Raises ConfigError.
     """
     refusal: ContradictionError | None = None
     try:
-        found = _solve(intrinsics_of, spec, views)
-        if not earlier or _refused(found[0]) <= _MOST_REFUSED:
-            return found
+        solution = _solve(intrinsics_of, spec, views)
+        if not earlier or _rejected_share(solution[0]) <= _MOST_REFUSED:
+            return solution
     except ContradictionError as error:
         if not earlier:
             raise
@@ -57,7 +57,7 @@ def solve_live(
     try:
         return _solve(intrinsics_of, spec, _apart(views, earlier))
     except ConfigError:
-        # this step's own views may be too few to say it again
+        # this step's own views may be too few for their own error message
         if isinstance(refusal, MirroredError):
             raise refusal from None
         raise
@@ -71,10 +71,12 @@ def _solve(
     names = list(intrinsics_of)
     sizes_px = [intrinsics.size_px for intrinsics in intrinsics_of.values()]
     chosen = {
-        name: _chosen(name, intrinsics.size_px, views) for name, intrinsics in intrinsics_of.items()
+        name: _choose(name, intrinsics.size_px, views) for name, intrinsics in intrinsics_of.items()
     }
-    known = _known(list(intrinsics_of.values()), [_alone(name, views) for name in names])
-    bundle = replace(PARAMS.bundle, priors=IntrinsicsPriors(known=known))
+    measured = _measured_intrinsics(
+        list(intrinsics_of.values()), [_alone(name, views) for name in names]
+    )
+    bundle = replace(PARAMS.bundle, priors=IntrinsicsPriors(measured=measured))
     extrinsics = solve_extrinsics(
         names, sizes_px, intrinsics_of, chosen, spec, replace(PARAMS, bundle=bundle)
     )
@@ -82,21 +84,23 @@ def _solve(
 
 
 def _alone(name: str, views: Views) -> list[BoardView]:
-    """This camera's views that no other shares."""
+    """This camera's views without a counterpart in other cameras."""
     others = {i for other, own in views.items() if other != name for i in own}
     return [view for index, view in views[name].items() if index not in others]
 
 
-def _chosen(name: str, size_px: tuple[int, int], views: Views) -> dict[int, BoardView]:
-    """All views that cameras share, and the best of those of this camera alone."""
+def _choose(name: str, size_px: tuple[int, int], views: Views) -> dict[int, BoardView]:
+    """All views in common with other cameras, and the best of the other ones."""
     alone = _alone(name, views)
-    kept = {view.index for view in choose_views(alone, size_px, _ALONE)}
-    dropped = {view.index for view in alone} - kept
+    chosen = {view.index for view in choose_views(alone, size_px, _ALONE)}
+    dropped = {view.index for view in alone} - chosen
     return {index: view for index, view in views[name].items() if index not in dropped}
 
 
-def _known(measured: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]) -> KnownIntrinsics:
-    """Intrinsics without pictures of their own stay near their measured values."""
+def _measured_intrinsics(
+    measured: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]]
+) -> MeasuredIntrinsics:
+    """Prior for intrinsics without pictures of their own: near their measured values."""
     rows = np.stack([intrinsics_row(intrinsics.K, intrinsics.dist) for intrinsics in measured])
     deviation = np.full(rows.shape, np.inf)
     for i, (intrinsics, views) in enumerate(zip(measured, alone, strict=True)):
@@ -108,15 +112,15 @@ def _known(measured: Sequence[Intrinsics], alone: Sequence[Sequence[BoardView]])
         deviation[i, :2] = focal * rows[i, :2]
         deviation[i, 2:4] = _MIDDLE * intrinsics.size_px[0]
         deviation[i, 4:] = _DIST
-    return KnownIntrinsics(rows, deviation)
+    return MeasuredIntrinsics(rows, deviation)
 
 
-def _refused(extrinsics: SceneExtrinsics) -> float:
+def _rejected_share(extrinsics: SceneExtrinsics) -> float:
     return 1.0 - float(np.mean(extrinsics.bundle.used))
 
 
 def _apart(views: Views, earlier: frozenset[int]) -> dict[str, dict[int, BoardView]]:
-    """The same views, those of earlier sightings each as of one camera alone."""
+    """The same views, with those of earlier sightings separate for each camera."""
     free = 1 + max((index for own in views.values() for index in own), default=0)
     out: dict[str, dict[int, BoardView]] = {}
     for name, own in views.items():

@@ -1,4 +1,4 @@
-"""Initial extrinsics from a board: a pose graph of cameras, an edge for each pair that shares positions."""
+"""Initial extrinsics from a board: a pose graph of cameras, an edge for each pair with common positions."""
 
 from collections.abc import Mapping, Sequence
 
@@ -12,14 +12,14 @@ from mocapd.calibrate.extrinsics.board_reprojection import (
     ReprojectionProblem,
     residuals_px,
 )
-from mocapd.calibrate.extrinsics.mirrored_pictures import SeenPose, distances
+from mocapd.calibrate.extrinsics.mirrored_pictures import PrintPose, distances
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, board_pose
 from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import intrinsics_row
 from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform, stack
 from mocapd.types import Floats
 
-FEWEST_SHARED = 3  # board positions that join two cameras: one may be wrong
+FEWEST_SHARED = 3  # board positions for an edge: one may be wrong
 
 
 def initial_scene(
@@ -31,15 +31,15 @@ def initial_scene(
 ) -> tuple[ReprojectionProblem, list[int]]:
     """The scene in the first camera's frame, and the indices of its board positions.
 
-    `views[camera][index]`; a back lies as it is expected to lie. Cameras need not all see one position:
-    they are chained along the spanning tree of the pairs with the most shared positions. Raises
-    ConfigError that names the cameras which share none with the others.
+    `views[camera][index]`; a back has its usual offset. Cameras need no position common to all: they are chained along
+    the spanning tree of the pairs with the most common positions. Raises ConfigError that names cameras without any in
+    common with the others.
     """
     back = usual_back(board_m, gluing)
     poses = {
         name: {
             index: camera_from_board(pose, back)
-            for index, pose in seen_poses(views[name], intrinsics_of[name], board_m).items()
+            for index, pose in board_poses(views[name], intrinsics_of[name], board_m).items()
         }
         for name in names
     }
@@ -51,8 +51,8 @@ def initial_scene(
     indices = sorted({index for name in names for index in poses[name]})
     boards = []
     for index in indices:
-        seen = [name for name in names if index in poses[name]]
-        guesses = [relative[name].inverse() @ poses[name][index] for name in seen]
+        observing = [name for name in names if index in poses[name]]
+        guesses = [relative[name].inverse() @ poses[name][index] for name in observing]
         corners = observations(names, views, [index], board_m)
         errors = [
             _misfit_px(intrinsics, camera_from_scene, guess, corners, back) for guess in guesses
@@ -89,27 +89,27 @@ def observations(
     )
 
 
-def seen_poses(
+def board_poses(
     views: Mapping[int, BoardView], intrinsics: Intrinsics, board_m: Floats
-) -> dict[int, SeenPose]:
-    """By index; views that no pose fits are left out."""
-    found = {
+) -> dict[int, PrintPose]:
+    """By index; omits views without a valid pose."""
+    fits = {
         index: board_pose(view, board_m, intrinsics.K, intrinsics.dist)
         for index, view in views.items()
     }
-    return {i: SeenPose(pose, views[i].back) for i, pose in found.items() if pose is not None}
+    return {i: PrintPose(pose, views[i].back) for i, pose in fits.items() if pose is not None}
 
 
-def camera_from_board(seen: SeenPose, back: BackPrint) -> RigidTransform:
-    """Of a print that is on the front, or on a back that lies so."""
-    pose = seen.camera_from_print
-    return pose @ back.board_from_back.inverse() if seen.back else pose
+def camera_from_board(print_pose: PrintPose, back: BackPrint) -> RigidTransform:
+    """From the pose of a print on the front, or on a back with this offset."""
+    pose = print_pose.camera_from_print
+    return pose @ back.board_from_back.inverse() if print_pose.back else pose
 
 
 def _span_pose_graph(
     names: Sequence[str], poses: Mapping[str, Mapping[int, RigidTransform]]
 ) -> dict[str, RigidTransform]:
-    """camera_from_first of each camera, by Prim's tree with the most shared positions first."""
+    """camera_from_first of each camera, by Prim's algorithm with the most common positions first."""
     placed: dict[str, RigidTransform] = {names[0]: IDENTITY}
     while len(placed) < len(names):
         pairs = [
@@ -118,10 +118,10 @@ def _span_pose_graph(
             for b in names
             if b not in placed
         ]
-        shared, known, new = max(pairs, key=lambda pair: pair[0])
+        shared, old, new = max(pairs, key=lambda pair: pair[0])
         if shared < FEWEST_SHARED:
             raise _apart(names, list(placed), poses)
-        placed[new] = _relative(poses[new], poses[known]) @ placed[known]
+        placed[new] = _relative(poses[new], poses[old]) @ placed[old]
     return placed
 
 
@@ -129,14 +129,14 @@ def _apart(
     names: Sequence[str], placed: Sequence[str], poses: Mapping[str, Mapping[int, RigidTransform]]
 ) -> ConfigError:
     alone = [name for name in names if name not in placed]
-    if len(placed) == 1 and len(names) > 2:  # it is the first that is alone
+    if len(placed) == 1 and len(names) > 2:  # the first camera is the isolated one
         others = alone
         if max(len(poses[a].keys() & poses[b].keys()) for a in others for b in others if a != b):
             alone = list(placed)
-    seen = ", ".join(f"{name} in {len(poses[name])} pictures" for name in names)
+    counts = ", ".join(f"{name} in {len(poses[name])} pictures" for name in names)
     return ConfigError(
         f"{', '.join(alone)} never sees the board at the same moment as another camera "
-        f"(at least {FEWEST_SHARED} moments are needed; the board is seen by {seen})",
+        f"(at least {FEWEST_SHARED} moments are needed; the board is seen by {counts})",
         "the room",
         "hold the board where two cameras see it, pair by pair; frames of one index must be of "
         "one moment",
@@ -144,10 +144,10 @@ def _apart(
 
 
 def _relative(a: Mapping[int, RigidTransform], b: Mapping[int, RigidTransform]) -> RigidTransform:
-    """a_from_b: of what each shared position says, the one nearest to all others.
+    """a_from_b: the medoid of the estimates of all common positions.
 
-    A flat board seen small has two poses that look alike, and some views take the wrong one: no
-    mean, but the middle one.
+    A small flat board in a picture has two similar poses, and some views have the wrong one: so no mean, but the
+    middle one.
     """
     said = [a[index] @ b[index].inverse() for index in sorted(a.keys() & b.keys())]
     return said[int(np.argmin(np.median(distances(stack(said)), axis=1)))]
@@ -157,11 +157,11 @@ def _misfit_px(
     intrinsics: Floats,
     camera_from_scene: RigidTransform,
     scene_from_board: RigidTransform,
-    seen: Observations,
+    obs: Observations,
     back: BackPrint,
 ) -> float:
     """Median distance [px] of the corners of one position in all cameras."""
     still = np.zeros(len(intrinsics)), np.zeros((1, 2, POSE))
     boards = stack([scene_from_board])
     scene = ReprojectionProblem(intrinsics, camera_from_scene, boards, *still, back)
-    return float(np.median(np.linalg.norm(residuals_px(scene, seen), axis=1)))
+    return float(np.median(np.linalg.norm(residuals_px(scene, obs), axis=1)))

@@ -1,4 +1,4 @@
-"""The rig's file in the capture format, written whole or not at all."""
+"""Writes the rig's file in the capture format, atomically."""
 
 import json
 from pathlib import Path
@@ -16,7 +16,7 @@ RIG = FileKind("a rig file", _begins_as_rig)
 
 
 def write_rig(out: OutputFile | Path, rig: Rig) -> None:
-    """Write the file whole or not at all. Raises CannotCreateError."""
+    """Write the file atomically. Raises CannotCreateError."""
     cameras = [camera_to_dict(camera) for camera in rig.cameras]
     text = json.dumps({"schema": SCHEMA, "cameras": cameras}, indent=1)
     out = OutputFile(out, RIG) if isinstance(out, Path) else out

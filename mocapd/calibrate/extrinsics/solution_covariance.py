@@ -1,14 +1,14 @@
-"""How well parameters of a least squares solution are known, also where errors go together.
+"""Covariance of parameters of a least squares solution, robust against correlated errors.
 
-The curvature at the solution says it for errors that are independent. Where a model is wrong for a while - pictures out
-of time, a board that bends - the errors of many corners have one cause. The sandwich estimate (White 1980, Liang and
+The curvature at the solution gives it for independent errors. Where the model is wrong for a while - pictures with time
+errors, a board that bends - the errors of many corners have a common cause. The sandwich estimate (White 1980, Liang and
 Zeger 1986) takes the scatter of whole stretches of the recording instead.
 """
 
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy  # its parts when they are used: they take long to import
+import scipy  # its submodules load on first use: they take long to import
 
 from mocapd.types import Floats, Ints
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 def asked_covariances(
     J: "scipy.sparse.csr_matrix", error: Floats, stretch: Ints, asked: Ints
 ) -> tuple[Floats, Floats]:
-    """(A,A) of the parameters `asked` (A,): by the curvature, and grown to the sandwich where that is larger.
+    """(A,A) of the parameters `asked` (A,): by the curvature, raised to the sandwich estimate where that is larger.
 
-    J (N,P) and error (N,) in standard deviations; stretch (M,): of the first M rows, what goes together; rows after
+    J (N,P) and error (N,) in standard deviations; stretch (M,): the stretch of each of the first M rows; the rows after
     these are priors.
     """
     columns = J.shape[1]

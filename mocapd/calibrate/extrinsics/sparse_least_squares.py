@@ -1,14 +1,14 @@
-"""Least squares of many parameters of which each residual depends on few: Levenberg-Marquardt on sparse equations.
+"""Sparse Levenberg-Marquardt for many parameters, each residual depending on few.
 
-scipy's own solver of sparse problems iterates (LSMR) for each step, which took most of a calibration's time; here
-each step is solved directly.
+scipy's own sparse solver iterates (LSMR) for each step, which took most of a calibration's time; here a direct solver
+gives each step.
 """
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy  # its parts when they are used: they take long to import
+import scipy  # its submodules load on first use: they take long to import
 
 from mocapd.types import Floats
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 _DAMPING = 1e-6  # of the diagonal, at first,
 _LEAST_DAMPING, _MOST_DAMPING = 1e-9, 1e6
 _EASIER, _HARDER = 0.1, 10.0
-_SETTLED = 1e-5  # part of the cost by which a step lowers it, when it is the last
-_BEND = 0.6  # of the weight, at least: far errors would take steps that are too long
-_NOTHING = 1e-12  # on the diagonal, where no residual depends on a parameter: it stays as it is
+_SETTLED = 1e-5  # relative decrease of the cost by the last step
+_BEND = 0.6  # lower bound of the weight: distant errors would make steps too long
+_NOTHING = 1e-12  # on the diagonal, for a parameter without residuals: it stays fixed
 
 
 def least_squares_steps(
@@ -40,13 +40,13 @@ def least_squares_steps(
     damping = _DAMPING
     for _ in range(most_steps):
         weight = _weights(e, robust)
-        # the loss bends less than by its weights where errors are usual
+        # the loss has less curvature than its weights where errors are usual
         bend = np.maximum(weight**3, _BEND * weight)
         J = slope(x)
         down = -(J.T @ (weight * e))
         normal = (J.T.multiply(bend).tocsr() @ J).tocsc()
         while True:
-            trial = x + _solved(normal, down, damping)
+            trial = x + _solve_damped(normal, down, damping)
             trial_e = error(trial)
             trial_cost = _cost(trial_e, robust)
             if trial_cost < cost or damping > _MOST_DAMPING:
@@ -74,7 +74,7 @@ def _weights(e: Floats, robust: int) -> Floats:
     return out
 
 
-def _solved(normal: "scipy.sparse.csc_matrix", down: Floats, damping: float) -> Floats:
+def _solve_damped(normal: "scipy.sparse.csc_matrix", down: Floats, damping: float) -> Floats:
     diagonal = normal.diagonal()
     stiff = normal + scipy.sparse.diags_array(damping * diagonal + _NOTHING, format="csc")
     factors = scipy.sparse.linalg.splu(

@@ -1,4 +1,4 @@
-"""The world frame of the extrinsics: floor, up, front; and how well the cameras agree with each other."""
+"""The world frame of the extrinsics: floor, up, front; and the agreement of the cameras."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,12 +14,12 @@ from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats, Rig
 
-_FRONT = 0.2  # length of the mean direction to the cameras, above which there is a front
+_FRONT = 0.2  # least length of the mean direction to the cameras that defines a front
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WorldFrame:
-    """Where the scene is in the world, and what must be said of where that comes from ("": nothing)."""
+    """The scene in the world, and a remark for the user on its origin ("": none)."""
 
     world_from_scene: RigidTransform
     note: str = ""
@@ -27,15 +27,15 @@ class WorldFrame:
 
 @dataclass(frozen=True, slots=True)
 class PlayAreaError:
-    """Distance of corners, triangulated, from a rigid board laid through them [cm]; with what the cameras' places are
-    known to, see `with_places`."""
+    """Distance of triangulated corners from a rigid board fitted to them [cm]; with the uncertainty of the cameras'
+    positions, see `with_places`."""
 
     median_cm: float
     p95_cm: float
     corners: int
 
     def with_places(self, place_cm: float) -> "PlayAreaError":
-        """The same where cameras may be `place_cm` off together with all that they saw: no board shows that."""
+        """Adds an error of `place_cm` of cameras together with all that they see, which no board shows."""
         return PlayAreaError(
             float(np.hypot(self.median_cm, place_cm)),
             float(np.hypot(self.p95_cm, place_cm)),
@@ -52,8 +52,8 @@ def world_on_floor(
 ) -> WorldFrame:
     """The world of a board that lies on the floor, face up, at this position; its middle is the origin.
 
-    +Z points from there to the middle of the cameras: that is where a person at rest looks. Raises
-    ConfigError when cameras would be under the floor.
+    +Z points from there to the middle of the cameras, which a person at rest faces. Raises ConfigError for cameras
+    under the floor.
     """
     scene_from_board = scene.scene_from_board[position]
     world = _world(scene, -scene_from_board.R[:, 2], scene_from_board.apply(middle_m))
@@ -75,7 +75,7 @@ def world_on_floor(
 
 
 def guess_world(scene: ReprojectionProblem, board_m: Floats) -> WorldFrame:
-    """A world without a floor: up is what is up in most pictures, the floor under the lowest corner."""
+    """A world without a floor: up is up in most pictures, the floor is below the lowest corner."""
     up = -scene.camera_from_scene.R[:, 1].sum(axis=0)
     corners = scene.scene_from_board[:, None].apply(board_m).reshape(-1, 3)
     world = _world(scene, up, corners.mean(axis=0))
@@ -102,7 +102,7 @@ def _world(scene: ReprojectionProblem, up: Floats, origin_m: Floats) -> RigidTra
 
 
 def camera_centres(scene: ReprojectionProblem) -> Floats:
-    """(C,3) where the cameras are [m, scene]."""
+    """(C,3) positions of the cameras [m, scene]."""
     return scene.camera_from_scene.inverse().t_m
 
 
@@ -116,30 +116,28 @@ def rig_in_world(
     cameras = []
     for i, (name, size_px) in enumerate(zip(names, sizes_px, strict=True)):
         camera_from_scene, row = scene.camera_from_scene[i], scene.intrinsics[i]
-        # back onto the rotations, from which a thousand products drift
+        # project back onto rotations, from which a thousand products drift
         R = nearest_rotation(camera_from_scene.R @ world.world_from_scene.R.T)
         t_m = camera_from_scene.t_m - R @ world.world_from_scene.t_m
         cameras.append(Camera(name, size_px, camera_matrix(row), row[4:].copy(), R, t_m))
     return Rig(tuple(cameras))
 
 
-def play_area_error(rig: Rig, seen: Observations) -> PlayAreaError | None:
-    """How far triangulated corners are from a rigid board, where two cameras and more see four.
+def play_area_error(rig: Rig, obs: Observations) -> PlayAreaError | None:
+    """Distance of triangulated corners from a rigid board, where two cameras and more see four corners.
 
-    None where no position of the board is seen so.
+    None without such a position of the board.
     """
-    keys, corner = np.unique(
-        np.column_stack([seen.view, seen.point_m]), axis=0, return_inverse=True
-    )
+    keys, corner = np.unique(np.column_stack([obs.view, obs.point_m]), axis=0, return_inverse=True)
     xy = np.full((len(rig.cameras), len(keys), 2), np.nan)
     for i, camera in enumerate(rig.cameras):
-        own = seen.camera == i
-        xy[i, corner.ravel()[own]] = normalised(camera, seen.pixels[own])
+        own = obs.camera == i
+        xy[i, corner.ravel()[own]] = normalised(camera, obs.pixels[own])
     points_m, _ = triangulate(rig.cameras, xy)
-    known = np.isfinite(points_m).all(axis=1)
+    valid = np.isfinite(points_m).all(axis=1)
     distances = []
-    for view in np.unique(keys[known, 0]):
-        own = known & (keys[:, 0] == view)
+    for view in np.unique(keys[valid, 0]):
+        own = valid & (keys[:, 0] == view)
         if own.sum() >= 4:
             distances.append(_from_rigid(keys[own, 1:], points_m[own]))
     if not distances:
@@ -149,7 +147,7 @@ def play_area_error(rig: Rig, seen: Observations) -> PlayAreaError | None:
 
 
 def _from_rigid(board_m: Floats, points_m: Floats) -> Floats:
-    """Distances (n,) of the points from a board laid through them."""
+    """Distances (n,) of the points from a board fitted to them."""
     world_from_board = align_points(points_m, board_m)
     distances: Floats = np.linalg.norm(world_from_board.apply(board_m) - points_m, axis=1)
     return distances

@@ -1,1 +1,1 @@
-"""Focal length, centre and distortion of each camera, and which views they are solved from."""
+"""Intrinsics of each camera, and the selection of views for them."""

@@ -16,8 +16,8 @@ from mocapd.geometry.reprojection import intrinsics_row, project_rows
 from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.types import Floats
 
-# Which of k1 k2 p1 p2 k3 are solved for, the simplest first: a board that never came near the
-# edges of the picture cannot tell the higher ones, and a wrong one is worse than none.
+# Which of k1 k2 p1 p2 k3 to solve for, the simplest first: a board that never comes near the edges of
+# the picture does not constrain the higher ones, and a wrong one is worse than none.
 _MODELS = (
     (True, False, False, False, False),
     (True, True, False, False, False),
@@ -25,31 +25,30 @@ _MODELS = (
     (True, True, True, True, True),
 )
 _FOLDS = 4
-# its stubs do not know that the first guess may be left out
+# its type stubs do not allow leaving out the first guess
 _CALIBRATE: Any = cv2.calibrateCameraExtended
 _WORTH = 0.97  # a further coefficient must lower the held-out error to this part of it
 
 
 @dataclass(frozen=True, slots=True)
 class IntrinsicsLimits:
-    """What intrinsics must reach to be used."""
+    """Requirements for using intrinsics."""
 
     fewest_views: int = 6
     rms_px: float = 1.5
     held_out_px: float = 2.0
     least_tilt_rad: float = 0.17  # between the boards of the most different views
-    focal_deviation: float = 0.05  # standard deviation of the focal length, of itself
-    view_rms: float = 2.5  # a view is thrown out above this many times the median error
+    focal_deviation: float = 0.05  # standard deviation of the focal length, relative to it
+    view_rms: float = 2.5  # a view with more than this many times the median error is an outlier
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Intrinsics:
     """K (3,3) [px], dist (5,) k1 k2 p1 p2 k3, of pictures of `size_px`; `free` (5,): which were solved for.
 
-    `rms_px`: of the views it was computed from. `held_out_px`: of views that were left out of a
-    solution in their turn, with only their board's pose fitted. `views`: indices of those used;
-    `thrown_out`: those that did not fit the others. `focal_deviation`: standard deviation of the
-    focal length as a part of it.
+    `rms_px`: of the views in the solution. `held_out_px`: cross-validation error, with only the board's pose fitted
+    to each held-out view. `views`: indices of the views in the solution; `thrown_out`: of the outliers.
+    `focal_deviation`: standard deviation of the focal length relative to it.
     """
 
     size_px: tuple[int, int]
@@ -80,7 +79,7 @@ def solve_intrinsics(
     where: str,
     limits: IntrinsicsLimits | None = None,
 ) -> Intrinsics:
-    """The intrinsics of camera `where`. Raises ConfigError that says why these views do not give it.
+    """The intrinsics of camera `where`. Raises ConfigError naming what is wrong with the views.
 
     `board_m` (n,3): the board's corners by id.
     """
@@ -91,19 +90,19 @@ def solve_intrinsics(
             where,
             "show the board at more places and slants, in good light",
         )
-    kept = list(views)
-    first = _solve(kept, board_m, size_px, _MODELS[1], where)
+    inliers = list(views)
+    first = _solve(inliers, board_m, size_px, _MODELS[1], where)
     _refuse_parallel(first, views, where, limits)
     bad = first.per_view_px > max(limits.view_rms * float(np.median(first.per_view_px)), 0.5)
-    kept = [view for view, out in zip(views, bad, strict=True) if not out]
-    if len(kept) < limits.fewest_views:
+    inliers = [view for view, out in zip(views, bad, strict=True) if not out]
+    if len(inliers) < limits.fewest_views:
         raise ConfigError(
             f"{int(bad.sum())} of {len(views)} views contradict the others",
             where,
             "give the size of the board as it is printed, and keep the board flat",
         )
-    model, held_out_px = _best_model(kept, board_m, size_px, where, first)
-    solution = _solve(kept, board_m, size_px, model, where, first)
+    model, held_out_px = _best_model(inliers, board_m, size_px, where, first)
+    solution = _solve(inliers, board_m, size_px, model, where, first)
     deviation = float((solution.deviations[:2] / np.diag(solution.K)[:2]).max())
     intrinsics = Intrinsics(
         size_px,
@@ -112,7 +111,7 @@ def solve_intrinsics(
         np.array(model),
         solution.rms_px,
         held_out_px,
-        tuple(view.index for view in kept),
+        tuple(view.index for view in inliers),
         tuple(view.index for view, out in zip(views, bad, strict=True) if out),
         deviation,
     )
@@ -128,7 +127,7 @@ def _solve(
     where: str,
     start: _Solution | None = None,
 ) -> _Solution:
-    """`start`: a solution of nearly the same views, from which it is found sooner."""
+    """`start`: a solution of nearly the same views, which shortens the search."""
     k1, k2, p1, _, k3 = model
     flags = 0 if k3 else cv2.CALIB_FIX_K3
     flags |= (0 if k2 else cv2.CALIB_FIX_K2) | (0 if k1 else cv2.CALIB_FIX_K1)
@@ -138,7 +137,7 @@ def _solve(
         flags |= cv2.CALIB_USE_INTRINSIC_GUESS
         K, dist = start.K.copy(), np.where(model, start.dist, 0.0)
     try:
-        found: Any = _CALIBRATE(
+        result: Any = _CALIBRATE(
             [board_m[view.ids].astype(np.float32) for view in views],
             [view.corners_px.astype(np.float32) for view in views],
             size_px,
@@ -148,7 +147,7 @@ def _solve(
         )
     except cv2.error:
         raise _parallel(where) from None
-    rms_px, K, dist, rotations, _, deviations, _, per_view_px = found
+    rms_px, K, dist, rotations, _, deviations, _, per_view_px = result
     assert K is not None
     assert dist is not None
     if not (np.isfinite(K).all() and np.isfinite(dist).all() and K[0, 0] > 0 and K[1, 1] > 0):
@@ -170,7 +169,7 @@ def _best_model(
     where: str,
     start: _Solution,
 ) -> tuple[tuple[bool, ...], float]:
-    """The simplest set of coefficients that views left out speak for, and the error of those [px]."""
+    """The simplest set of coefficients by cross-validation, and its held-out error [px]."""
     best, error_px = _MODELS[0], np.inf
     for model in _MODELS:
         squares: list[Floats] = []
@@ -191,21 +190,21 @@ def _best_model(
 def board_pose(view: BoardView, board_m: Floats, K: Floats, dist: Floats) -> RigidTransform | None:
     """camera_from_board of one view; None where no pose fits."""
     points_m = board_m[view.ids]
-    found, rotation, t_m = cv2.solvePnP(points_m, view.corners_px, K, dist, flags=cv2.SOLVEPNP_IPPE)
-    if not found:
+    fits, rotation, t_m = cv2.solvePnP(points_m, view.corners_px, K, dist, flags=cv2.SOLVEPNP_IPPE)
+    if not fits:
         return None
     rotation, t_m = cv2.solvePnPRefineLM(points_m, view.corners_px, K, dist, rotation, t_m)
     return RigidTransform(cv2.Rodrigues(rotation)[0].astype(float), t_m.astype(float).ravel())
 
 
 def pose_residuals_px(view: BoardView, board_m: Floats, K: Floats, dist: Floats) -> Floats:
-    """Distances (n,) of the corners from where the intrinsics put them, with the board's pose fitted."""
+    """Reprojection errors (n,) of the corners, with the board's pose fitted."""
     camera_from_board = board_pose(view, board_m, K, dist)
     if camera_from_board is None:
         return np.full(len(view.ids), np.inf)
     rows = np.tile(intrinsics_row(K, dist), (len(view.ids), 1))
-    seen = project_rows(rows, camera_from_board.apply(board_m[view.ids]))
-    distances: Floats = np.linalg.norm(seen - view.corners_px, axis=1)
+    expected = project_rows(rows, camera_from_board.apply(board_m[view.ids]))
+    distances: Floats = np.linalg.norm(expected - view.corners_px, axis=1)
     return distances
 
 
@@ -221,10 +220,10 @@ def _refuse_parallel(
     solution: _Solution, views: Sequence[BoardView], where: str, limits: IntrinsicsLimits
 ) -> None:
     """Parallel planes share their vanishing line and add nothing to one view (Zhang, section 4)."""
-    away = [-1.0 if view.back else 1.0 for view in views]  # of the side that is seen
+    away = [-1.0 if view.back else 1.0 for view in views]  # of the visible side
     normals = np.stack([s * R[:, 2] for s, R in zip(away, solution.rotations, strict=True)])
     cosines = np.clip(normals @ normals.T, -1.0, 1.0)
-    # of nine in ten, so that one wrong view does not pass for a tilt
+    # a percentile, so that one wrong view does not count as a tilt
     if np.percentile(np.arccos(cosines), 95) < limits.least_tilt_rad:
         raise _parallel(where)
 

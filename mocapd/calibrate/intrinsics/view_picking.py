@@ -1,4 +1,4 @@
-"""Which live views of the board the intrinsics are solved from, and what they lack as yet."""
+"""Selects live views of the board for the intrinsics, and says what is missing as yet."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -12,22 +12,22 @@ from mocapd.calibrate.intrinsics.views import coverage
 from mocapd.geometry.reprojection import camera_matrix
 from mocapd.types import Floats
 
-_USUAL_FOCAL = 0.95  # of a webcam, in picture widths: good enough to tell slants apart
-_TURN = 0.5  # a turn of 1 rad is as new as a shift by half the picture's width
-_SIZE = 0.3  # a board e times as large likewise
+_USUAL_FOCAL = 0.95  # of a webcam, in picture widths: good enough to distinguish slants
+_TURN = 0.5  # a rotation by 1 rad is as new as a shift by half the picture's width
+_SIZE = 0.3  # and so is a board e times as large
 
 
 @dataclass(frozen=True, slots=True)
 class PickingParams:
-    """When a picture is kept, and when those kept are enough to try.
+    """Criteria for picking a picture, and for having enough.
 
     most_motion: of corners, from picture to picture at 30 Hz [parts of the picture's width].
     """
 
     most_motion: float = 0.004
-    least_sharpness: float = 0.6  # of the sharper ones kept
-    new_place: float = 0.13  # distance from those kept [picture widths]
-    new_cells: int = 3  # of the coverage map, which make a picture worth keeping by themselves
+    least_sharpness: float = 0.6  # of the sharper picked ones
+    new_place: float = 0.13  # distance from the picked ones [picture widths]
+    new_cells: int = 3  # of the coverage map; so many are reason enough to pick a picture
     most: int = 40
     enough: int = 10
     covered: float = 0.5
@@ -45,7 +45,7 @@ class Lack(StrEnum):
 
 
 class PickedViews:
-    """The pictures of one camera that were kept."""
+    """The picked pictures of one camera."""
 
     def __init__(
         self, size_px: tuple[int, int], board_m: Floats, params: PickingParams | None = None
@@ -63,17 +63,17 @@ class PickedViews:
         return self._counts
 
     @property
-    def covered(self) -> float:
-        """The part of the cells, 0..1, in which a corner was seen."""
+    def covered_share(self) -> float:
+        """The share of the cells, 0..1, with a corner in any picture."""
         return float(np.mean(self._counts > 0))
 
     def still(self, motion_px: float) -> bool:
-        """Whether the board moves so little [px per 1/30 s] that the picture can be used."""
+        """Whether the board moves little enough [px per 1/30 s] for a usable picture."""
         return motion_px <= self._params.most_motion * self.size_px[0]
 
     def offer(self, view: BoardView, motion_px: float) -> bool:
-        """Keep this view if it adds to those before; whether it was kept."""
-        if not self.still(motion_px) or self._blurred(view):
+        """Add this view if it is new; returns whether it was added."""
+        if not self.still(motion_px) or self._is_blurred(view):
             return False
         place = rough_place(view, self._board_m, self.size_px)
         if place is None:
@@ -100,15 +100,20 @@ class PickedViews:
         x, y = self._spread()
         if min(x, y) < p.slant:
             return Lack.SIDEWAYS if x < y else Lack.UPWARDS
-        if self.covered < p.covered:
+        if self.covered_share < p.covered:
             return Lack.PLACES
         return Lack.NOTHING if len(self.views) >= p.enough else Lack.PICTURES
 
     def progress(self) -> float:
-        """0..1, how much of what is enough there is."""
+        """Progress towards enough views, 0..1."""
         p = self._params
         x, y = self._spread()
-        shares = (len(self.views) / p.enough, self.covered / p.covered, x / p.slant, y / p.slant)
+        shares = (
+            len(self.views) / p.enough,
+            self.covered_share / p.covered,
+            x / p.slant,
+            y / p.slant,
+        )
         return float(np.mean(np.minimum(shares, 1.0)))
 
     def emptiest(self) -> tuple[int, int]:
@@ -120,14 +125,14 @@ class PickedViews:
         at = int(np.argmin(ninths))
         return at // 3, at % 3
 
-    def _blurred(self, view: BoardView) -> bool:
+    def _is_blurred(self, view: BoardView) -> bool:
         if not self.views:
             return False
-        sharp = float(np.percentile([one.sharpness for one in self.views], 75))
+        sharp = float(np.percentile([picked.sharpness for picked in self.views], 75))
         return view.sharpness < self._params.least_sharpness * sharp
 
     def _spread(self) -> tuple[float, float]:
-        """Of the normals' directions, to the sides and up and down; about an angle [rad]."""
+        """Spread of the normals sideways and up and down; about an angle [rad]."""
         if not len(self._places):
             return 0.0, 0.0
         x, y = np.ptp(self._places[:, 3:], axis=0) / _TURN
@@ -135,10 +140,10 @@ class PickedViews:
 
 
 def rough_place(view: BoardView, board_m: Floats, size_px: tuple[int, int]) -> Floats | None:
-    """(5,): where the board is in the picture, how large, how slanted; None where no pose fits.
+    """(5,): the board's position in the picture, its size and its slant; None where no pose fits.
 
-    Distances between two tell how alike the views are [picture widths]. No intrinsics are needed: a usual
-    one is good enough to tell slants apart.
+    The distance between two measures how alike the views are [picture widths]. Needs no intrinsics: a usual
+    focal length is good enough to distinguish slants.
     """
     focal = _USUAL_FOCAL * size_px[0]
     K = camera_matrix(np.array([focal, focal, size_px[0] / 2, size_px[1] / 2]))

@@ -1,4 +1,4 @@
-"""Which views of the board the intrinsics are solved from: sharp ones that together fill the picture."""
+"""Chooses views of the board for the intrinsics: sharp ones that together fill the picture."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ GRID = (8, 6)  # cells across and down in which coverage is counted
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """How many views at the most, and how much less sharp than the best ones they may be."""
+    """The largest number of views, and their least sharpness relative to the best ones."""
 
     most: int = 30
     least_sharpness: float = 0.5  # of the 90th percentile of all views
@@ -29,8 +29,8 @@ def coverage(views: Sequence[BoardView], size_px: tuple[int, int]) -> NDArray[np
     return counts
 
 
-def covered(views: Sequence[BoardView], size_px: tuple[int, int]) -> float:
-    """The part of the picture's cells, 0..1, in which a corner was seen."""
+def covered_share(views: Sequence[BoardView], size_px: tuple[int, int]) -> float:
+    """The share of the picture's cells, 0..1, with a corner in any view."""
     return float(np.mean(coverage(views, size_px) > 0))
 
 
@@ -51,28 +51,28 @@ def sharp_views(views: Sequence[BoardView], least: float) -> list[BoardView]:
 def choose_views(
     views: Sequence[BoardView], size_px: tuple[int, int], choice: Choice
 ) -> list[BoardView]:
-    """At most `choice.most` sharp views, each the one that adds most to those before it.
+    """At most `choice.most` sharp views, chosen greedily: each adds most to those before it.
 
-    What a view adds: corners in cells that have few as yet, and a shape of the board (its place,
-    size and slant in the picture) unlike those taken. In the order of their index.
+    A view adds corners in cells that have few as yet, and a shape of the board (its place, size and slant in the
+    picture) unlike those chosen. In the order of their index.
     """
     rest = sharp_views(views, choice.least_sharpness)
     if len(rest) <= choice.most:
         return rest
     shapes = np.stack([_shape(view, size_px) for view in rest])
     counts = np.zeros((GRID[1], GRID[0]))
-    distance = np.full(len(rest), 1.0)  # from the nearest shape taken
-    taken: list[int] = []
+    distance = np.full(len(rest), 1.0)  # from the nearest chosen shape
+    chosen: list[int] = []
     for _ in range(choice.most):
         gain = np.array([_gain(view, counts, size_px) for view in rest])
         score = (0.2 + gain) * distance * [view.sharpness for view in rest]
-        score[taken] = -1.0
+        score[chosen] = -1.0
         best = int(np.argmax(score))
-        taken.append(best)
+        chosen.append(best)
         column, row = _cells(rest[best].corners_px, size_px)
         np.add.at(counts, (row, column), 1.0)
         distance = np.minimum(distance, np.linalg.norm(shapes - shapes[best], axis=1))
-    return [rest[i] for i in sorted(taken)]
+    return [rest[i] for i in sorted(chosen)]
 
 
 def _gain(view: BoardView, counts: Floats, size_px: tuple[int, int]) -> float:

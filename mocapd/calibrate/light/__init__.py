@@ -1,1 +1,1 @@
-"""Light: too dark, over-exposed, flickering; and the control value that gives a wanted reading."""
+"""Light: too dark, over-exposed, flickering; and the search for a control's value."""

@@ -1,4 +1,4 @@
-"""Whether the light will do: too dark, over-exposed, or flickering against the mains.
+"""Checks the light: too dark, over-exposed, or flickering with the mains.
 
 Lamps on the mains pulse at twice its frequency. A rolling shutter exposes row after row, so the
 pulses show as bands; from frame to frame they move by the alias of the pulses at the frame rate
@@ -16,11 +16,11 @@ from mocapd.types import Bytes, Floats, Ints
 _DARK_LEVEL = 45.0  # of 255, 75th percentile of luma
 _WHITE = 250
 _WHITE_SHARE = 0.2
-_SLOW_HZ = 1.5  # aliases slower than this look like movement: only bands that travel count
-_LEAST_DEPTH = 0.007  # rms of the brightness, relative: less does not harm
+_SLOW_HZ = 1.5  # aliases slower than this look like movement: only travelling bands count
+_LEAST_DEPTH = 0.007  # rms of the brightness, relative: less is harmless
 _PEAK = 8.0  # power over that of the neighbouring frequencies
-_ALIKE = 0.6  # share of all rows' power that one wave along the rows must have
-_EXPLAINED = 0.6  # share of all change that travelling bands must be
+_ALIKE = 0.6  # least share of all rows' power in one wave along the rows
+_EXPLAINED = 0.6  # least share of all change in travelling bands
 _LEAST_S = 1.2
 _LEAST_HZ = 10.0  # under this rate, aliases of lamps and of people are the same
 _MAINS_HZ = (50, 60)
@@ -37,19 +37,18 @@ class Flicker:
 def light_problems(
     camera: str, pixels: Bytes, flicker: Flicker | None, exposure_s: float | None
 ) -> tuple[Problem, ...]:
-    """What is wrong with the light in this picture (h,w,3) BGR.
+    """Problems of the light in this picture (h,w,3) BGR.
 
-    flicker: what `find_flicker` says of the frames; exposure_s: how long it was exposed [s], None
-    where that is not known.
+    flicker: the result of `find_flicker` for the frames; exposure_s: exposure time [s], None where unknown.
     """
-    found = []
+    problems = []
     thin = pixels[::12, ::12].reshape(-1, 3)
     if float(np.percentile(thin @ np.array([0.114, 0.587, 0.299]), 75)) < _DARK_LEVEL:
-        found.append(
+        problems.append(
             Problem("the picture is too dark", camera, "switch on more light, or open the blinds")
         )
     elif exposure_s is not None and exposure_s > 0.02:
-        found.append(
+        problems.append(
             Problem(
                 f"dim light: each picture takes {1e3 * exposure_s:.0f} ms, so quick movements blur",
                 camera,
@@ -58,7 +57,7 @@ def light_problems(
         )
     white = float((thin.min(axis=1) >= _WHITE).mean())
     if white > _WHITE_SHARE:
-        found.append(
+        problems.append(
             Problem(
                 f"{100 * white:.0f} % of the picture is plain white",
                 camera,
@@ -66,8 +65,8 @@ def light_problems(
             )
         )
     if flicker is not None:
-        found.append(_flicker_problem(camera, flicker, exposure_s))
-    return tuple(found)
+        problems.append(_flicker_problem(camera, flicker, exposure_s))
+    return tuple(problems)
 
 
 def _flicker_problem(camera: str, flicker: Flicker, exposure_s: float | None) -> Problem:
@@ -104,7 +103,7 @@ def find_flicker(t_ns: Ints, rows: Floats) -> Flicker | None:
     change = np.log(rows + 4.0)
     change = change - change.mean(axis=0)
     change -= np.outer(t_s - t_s.mean(), (t_s - t_s.mean()) @ change / np.var(t_s) / len(t_s))
-    found = []
+    flickers = []
     for mains_hz in _MAINS_HZ:
         pulses_hz = 2.0 * mains_hz
         if _alias_hz(pulses_hz, rate_hz) < _SLOW_HZ:
@@ -112,8 +111,8 @@ def find_flicker(t_ns: Ints, rows: Floats) -> Flicker | None:
         else:
             depth = _peak(t_s, change, pulses_hz, rate_hz)
         if depth >= _LEAST_DEPTH:
-            found.append(Flicker(mains_hz, depth))
-    return max(found, key=lambda one: one.depth, default=None)
+            flickers.append(Flicker(mains_hz, depth))
+    return max(flickers, key=lambda flicker: flicker.depth, default=None)
 
 
 def _even_times(t_ns: Ints) -> tuple[Floats, float]:
@@ -126,28 +125,28 @@ def _even_times(t_ns: Ints) -> tuple[Floats, float]:
 
 
 def _alias_hz(frequency_hz: Any, rate_hz: float) -> Any:
-    """What a frequency looks like at this rate of frames, 0 to half of it."""
+    """The alias of a frequency at this rate of frames, 0 to half of it."""
     return np.abs(frequency_hz - rate_hz * np.round(frequency_hz / rate_hz))
 
 
 def _peak(t_s: Floats, change: Floats, pulses_hz: float, rate_hz: float) -> float:
-    """Relative rms of what pulses at this frequency, one row after the other; 0.0 when it does not stand
-    out of the neighbouring frequencies, or is not alike in all rows, as lamps are and people are not."""
+    """Relative rms of pulses at this frequency, row after row; 0.0 when it does not exceed the neighbouring
+    frequencies, or differs between rows, as people do and lamps do not."""
     window = np.hanning(len(t_s) + 2)[1:-1]
     window *= 2.0 / window.sum()
     rows = change.shape[1]
     along = np.exp(-2j * np.pi * np.outer(np.arange(rows) / rows, np.arange(0.0, 5.01, 0.25)))
 
     def powers(frequencies_hz: Floats) -> tuple[Floats, Floats]:
-        """Of the best wave along the rows, and of all rows by themselves."""
+        """Of the best wave along the rows, and of each row by itself."""
         waves = (np.exp(-2j * np.pi * np.outer(frequencies_hz, t_s)) * window) @ change
         return (np.abs(waves @ along / rows) ** 2).max(axis=1), (np.abs(waves) ** 2).mean(axis=1)
 
     apart_hz = np.arange(1.8, 4.3, 0.25)
     away_hz = pulses_hz + np.concatenate([apart_hz, -apart_hz])
-    seen_at_hz = _alias_hz(away_hz, rate_hz)
+    alias_hz = _alias_hz(away_hz, rate_hz)
     own_hz = _alias_hz(pulses_hz, rate_hz)
-    away_hz = away_hz[(seen_at_hz > 1.0) & (np.abs(seen_at_hz - own_hz) > 1.5)]
+    away_hz = away_hz[(alias_hz > 1.0) & (np.abs(alias_hz - own_hz) > 1.5)]
     together, alone = powers(pulses_hz + np.arange(-0.6, 0.61, 0.1))
     top = int(together.argmax())
     floor = float(np.median(powers(away_hz)[0]))

@@ -1,13 +1,13 @@
-"""The value of a control that gives a wanted reading, when a reading grows with the value."""
+"""Searches the control value for a wanted reading, where the reading grows with the value."""
 
 import math
 
 
 class ValueSearch:
-    """Bisection by trial: set `value`, look, tell `seen`, until `over`; then `value` is the best seen.
+    """Bisection by trial: apply `value`, measure, call `report`, until `over`; then `value` is the best one.
 
-    low, high: the control's range; first: the value it has now; wanted: the reading aimed at;
-    tolerance: of the reading, relative. Halves on a logarithmic scale, as exposures work.
+    low, high: the control's range; first: its present value; wanted: the target of the reading;
+    tolerance: of the reading, relative. Bisects on a logarithmic scale, as exposures work.
     """
 
     def __init__(
@@ -21,12 +21,12 @@ class ValueSearch:
         self.over = False
 
     @property
-    def reached(self) -> bool:
-        """Whether the best value came near enough."""
+    def is_reached(self) -> bool:
+        """Whether the best value is within the tolerance."""
         return self._best[0] <= math.log1p(self._tolerance)
 
-    def seen(self, reading: float) -> None:
-        """What was seen with `value`; sets the next one, or the best when it is over."""
+    def report(self, reading: float) -> None:
+        """Take the reading at `value`; sets the next value, or the best one at the end."""
         self._left -= 1
         off = math.log(max(reading, 1e-3) / max(self._wanted, 1e-3))
         self._best = min(self._best, (abs(off), self.value))
@@ -35,7 +35,7 @@ class ValueSearch:
         else:
             self._high = max(self.value - 1, self._low)
         following = round(math.sqrt(self._low * self._high))
-        if self.reached or self._left <= 0 or following == self.value:
+        if self.is_reached or self._left <= 0 or following == self.value:
             self.value, self.over = self._best[1], True
         else:
             self.value = following

@@ -1,1 +1,1 @@
-"""Where the cameras stand, from the wearer alone: poses, body shape and cameras in one solution."""
+"""Extrinsics from the wearer alone: poses, body shape and cameras in one solution."""

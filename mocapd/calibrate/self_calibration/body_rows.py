@@ -1,4 +1,4 @@
-"""What one camera's classified picture says of pose, shape and of the camera's own place."""
+"""Normal equations of pose, shape and camera pose from one camera's classified picture."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -45,10 +45,10 @@ class BodyRows:
 
 
 class RowGatherer:
-    """Draws states into the views of one fitter and gathers their rows; holds buffers only."""
+    """Draws states into the views of one fitter and gathers their rows; has only buffers as state."""
 
     def __init__(self, fitter: Fitter, radius_px: int) -> None:
-        """radius_px: work px within which a label is looked for."""
+        """radius_px: search radius for a label, in work px."""
         self.fitter = fitter
         self._search = search_within(
             offsets_by_distance(radius_px), float(radius_px), grid_px=1.0, every=1, phase=0,
@@ -75,7 +75,7 @@ class RowGatherer:
 def camera_columns(at_m: Floats) -> Floats:
     """(6,6): a row's derivative by the camera's world motion from that by root and hips.
 
-    Moving the camera is moving the whole body before it: x -> x + omega x x + v. The root's columns
+    Moving the camera equals moving the whole body before it: x -> x + omega x x + v. The root's columns
     are g, those of the hips (x - at) x g, so by omega it is x x g = (x - at) x g + at x g.
     """
     out = np.eye(N_CAMERA)
@@ -90,7 +90,7 @@ def move_camera(camera: Camera, motion: Floats) -> Camera:
 
 
 def average_cameras(cameras: Sequence[Camera]) -> Camera:
-    """Amid the places (t and R) of a camera that differ little."""
+    """The mean (t and R) of similar poses of one camera."""
     quats = rotations.from_matrix(np.stack([camera.R for camera in cameras]))
     first = quats[0]
     turns = rotations.log(rotations.multiply(quats, rotations.inverse(first)))
@@ -100,9 +100,9 @@ def average_cameras(cameras: Sequence[Camera]) -> Camera:
 
 
 def shift_px(rows: BodyRows, camera: Camera, image_scale: int) -> Floats:
-    """The way (2,) in work px that this camera alone would move the whole body.
+    """The shift (2,) in work px of the whole body by this camera alone.
 
-    It tells of a camera that was turned across the plane of both views, and of no other turn.
+    It shows a rotation of the camera across the plane of both views, and no other one.
     """
     way_m = np.linalg.solve(rows.H[:3, :3] + 1e-3 * np.eye(3), rows.b[:3])
     depth_m = float(camera.R[2] @ rows.at_m + camera.t_m[2])

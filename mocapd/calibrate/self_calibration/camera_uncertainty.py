@@ -12,7 +12,7 @@ from mocapd.types import Camera, Floats
 class CameraUncertainty:
     """Standard deviations of the camera's rotation [degrees] and of its distance from the first [%].
 
-    They tell of chance and of what people differ by; with real bodies in real cloth the errors were up
+    They cover chance and the variation between people; with real bodies in real cloth the errors were up
     to three times as large (docs/decisions/calibration.md).
     """
 

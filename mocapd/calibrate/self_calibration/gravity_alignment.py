@@ -1,4 +1,4 @@
-"""The world frame from a person who stands and walks: gravity, floor and origin."""
+"""The world frame from a standing and walking person: gravity, floor and origin."""
 
 from collections.abc import Sequence
 
@@ -14,8 +14,8 @@ from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Floats, Rig
 
-_LEAN_RAD = 0.1  # a spine further from the usual one is bending, not standing
-_START = 15  # observations of the beginning, in which the person faces forwards
+_LEAN_RAD = 0.1  # a spine further from the usual direction is bent
+_START = 15  # first observations, in which the person faces forwards
 _NAMES = ("hips", "neck", "leftUpperArm", "rightUpperArm")
 _PLACES = [int(np.flatnonzero(INDEX[name] == MARKS)[0]) for name in _NAMES]
 
@@ -23,11 +23,11 @@ _PLACES = [int(np.flatnonzero(INDEX[name] == MARKS)[0]) for name in _NAMES]
 def align_with_gravity(
     rig: Rig, observations: Sequence[PatchObservation], stature_m: float, factors: Floats
 ) -> Rig:
-    """The rig in the world of someone who stood and walked in it.
+    """The rig in the world of a person who stood and walked in it.
 
-    Up is the middle direction of the spine, once observations of bending are left out; the floor is where
-    the feet of a body with these proportions (n_shape,) are when it stands straight; the origin is
-    where the person stood first, facing +Z. Raises ConfigError when nobody was placed in it.
+    Up is the median direction of the spine, without observations of bending; the floor is at the feet of a body with
+    these proportions (n_shape,) that stands straight; the origin is the person's first position, facing +Z. Raises
+    ConfigError without an observation by two cameras.
     """
     body = _bodies(rig, observations)
     rest = skeleton_of(shape_of(build_model(stature_m), factors)).rest_m
@@ -40,7 +40,7 @@ def align_with_gravity(
             break
         up = _unit(spine[unbent].mean(axis=0))
     hips = body[:, 0]
-    # knees bend now and then; they never make anybody taller
+    # knees bend now and then; they never make a person taller
     height = float(np.percentile(hips @ up, 75))
     floor = height - rest[INDEX["hips"], 1]
     across = _unit(np.median(body[:_START, 2] - body[:_START, 3], axis=0))  # right to left is +X
@@ -55,7 +55,7 @@ def align_with_gravity(
 
 
 def _bodies(rig: Rig, observations: Sequence[PatchObservation]) -> Floats:
-    """Hips, neck and shoulders (F,4,3) of every observation that at least two cameras saw."""
+    """Hips, neck and shoulders (F,4,3) of every observation by at least two cameras."""
     missing = np.full((len(_NAMES), 2), np.nan)
     xy = np.array(
         [
@@ -67,7 +67,7 @@ def _bodies(rig: Rig, observations: Sequence[PatchObservation]) -> Floats:
     good: Floats = points[np.isfinite(points).all(axis=(1, 2))]
     if len(good) == 0:
         raise ConfigError(
-            "nobody was seen by two cameras at once", "room", "walk where both see the shirt"
+            "no two cameras saw the wearer at once", "room", "walk where both see the shirt"
         )
     return good
 

@@ -1,4 +1,4 @@
-"""Initial extrinsics from the wearer: each camera placed next to one that saw the same bodies."""
+"""Initial extrinsics from the wearer: each camera placed relative to one with observations of the same bodies."""
 
 from collections.abc import Sequence
 
@@ -14,22 +14,22 @@ from mocapd.types import Camera
 def initial_extrinsics(
     observations: Sequence[PatchObservation], bare_cameras: Sequence[Camera]
 ) -> list[Camera]:
-    """The first camera where a lone webcam would stand, the others by the bodies seen in common.
+    """The first camera at the nominal pose of a single webcam, the others by common bodies.
 
-    Cameras that share nothing with the first are chained through others. Raises ConfigError naming
-    a camera that shares nothing with any.
+    Cameras without bodies in common with the first are chained through others. Raises ConfigError naming a
+    camera that has none in common with any.
     """
     alone = place_nominally(bare_cameras)
     placed: dict[str, Camera] = {alone[0].name: alone[0]}
     while len(placed) < len(alone):
         candidates = [
-            (_shared(observations, a, b.name), a, b)
+            (_common(observations, a, b.name), a, b)
             for a in placed
             for b in alone
             if b.name not in placed
         ]
-        shared, known, new = max(candidates, key=lambda one: len(one[0]))
-        first = [m[known] for m in shared]
+        shared, old, new = max(candidates, key=lambda entry: len(entry[0]))
+        first = [m[old] for m in shared]
         second = [m[new.name] for m in shared]
         if not shared:
             raise ConfigError(
@@ -48,10 +48,10 @@ def initial_extrinsics(
             np.concatenate([s.joints_m[MARKS] for s in second]),
             weights.ravel(),
         )
-        known_from_world = camera_from_world(placed[known])
-        placed[new.name] = with_extrinsics(new, pose.second_from_first @ known_from_world)
+        old_from_world = camera_from_world(placed[old])
+        placed[new.name] = with_extrinsics(new, pose.second_from_first @ old_from_world)
     return [placed[camera.name] for camera in alone]
 
 
-def _shared(observations: Sequence[PatchObservation], a: str, b: str) -> list[PatchObservation]:
+def _common(observations: Sequence[PatchObservation], a: str, b: str) -> list[PatchObservation]:
     return [m for m in observations if a in m and b in m]

@@ -32,36 +32,35 @@ _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
 
 @dataclass(frozen=True, slots=True)
 class SelfCalibrationParams:
-    """How the extrinsics are solved."""
+    """Parameters of the solution."""
 
     keyframes: int = 64
     rounds: int = 20
     averaged: int = (
         8  # last rounds: steps end in the noise of whole pixels, which their mean halves
     )
-    radius_px: int = 14  # work px within which colours are looked for
-    polish: int = 3  # rounds of the poses alone with the extrinsics that were found
-    loose_s: float = 0.4  # a start is held to as loosely as a prediction over this time
+    radius_px: int = 14  # work px, search radius for colours
+    polish: int = 3  # rounds of the poses alone with the final extrinsics
+    loose_s: float = 0.4  # weight of the initial poses, as of a prediction over this time
     joint_sd_rad: float = 0.5  # how far a pose may yield to a change of extrinsics or shape
-    least_match: float = 0.6  # of a keyframe that counts
-    tolerated_cost: float = 3.0  # and its cost, against that of the middle one
+    least_match: float = 0.6  # of an inlier keyframe
+    tolerated_cost: float = 3.0  # of an inlier, relative to the median cost
     least_keyframes: int = 6
-    # how many of them count in full against what is known of people: their errors are alike
+    # weight of all keyframes relative to the prior of people's shapes: their errors are correlated
     independent_frames: float = 8.0
-    # how far a surface may be off from what the shape's factors make of it
+    # standard deviation of the surface about the shape model
     off_sd_m: float = 0.02
-    # how much less is believed of body and cameras than their covariance says, beside sleeve rings
+    # inflation of the covariance of body and cameras relative to sleeve rings
     surface_uncertainty: float = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SelfCalibrationReport:
-    """How well the extrinsics were solved.
+    """Quality of the extrinsics.
 
-    residual_px: RMS by camera, over the drawn shirt, of how far its pixels are from where their
-    colour is seen [px of the frames]; frames: keyframes that agree; distance_m: of each camera from
-    the first; match: share of the drawn shirt that the pictures confirm; factors (n_shape,): the
-    wearer's proportions; uncertainties: by camera but the first.
+    residual_px: RMS by camera, over the drawn shirt, of the distance of its pixels from their colour in the picture [px
+    of the frames]; frames: inlier keyframes; distance_m: of each camera from the first; match: share of the drawn shirt
+    that the pictures confirm; factors (n_shape,): the wearer's proportions; uncertainties: by camera but the first.
     """
 
     residual_px: Mapping[str, float]
@@ -74,7 +73,7 @@ class SelfCalibrationReport:
 
 @dataclass(slots=True, eq=False)
 class _Scene:
-    """What is solved for: cameras, the factors (N,) of a free body, and a state per keyframe."""
+    """The unknowns: cameras, the factors (N,) of a free body, and a state per keyframe."""
 
     cameras: list[Camera]
     factors: Floats
@@ -83,8 +82,8 @@ class _Scene:
 
 @dataclass(slots=True, eq=False)
 class _Evidence:
-    """Normal equations H (n,n), b (n,) of shape and cameras without the poses; follows: by keyframe how
-    its pose answers to a step of those, and its own step; None for one that is not believed."""
+    """Normal equations H (n,n), b (n,) of shape and cameras, poses eliminated; follows: by keyframe the derivative of
+    its pose by a step of those, and its own step; None for an outlier."""
 
     H: Floats
     b: Floats
@@ -110,42 +109,43 @@ class JointSolver:
         scene = _Scene(list(cameras), np.ones(self._n_shape), [])
         fitter = Fitter(model, shirt_labels(model), cameras, self._work, self._tracker)
         for keyframe in keyframes:
-            seen = keyframe_views(keyframe, self._work)
+            frame_views = keyframe_views(keyframe, self._work)
             fits = [
-                fitter.fit(s, seen, params.loose_s, 8)
+                fitter.fit(s, frame_views, params.loose_s, 8)
                 for s in initial_states(keyframe, cameras, model, np.ones(model.n_shape))
             ]
             best = min(fits, key=lambda fit: fit.cost)
             scene.states.append(replace(best.state, factors=scene.factors))
-            self._views.append(seen)
+            self._views.append(frame_views)
         self._scene = scene
 
     @property
     def cost(self) -> float:
-        """Of the middle keyframe as things are now, for each drawn pixel."""
+        """The median cost of keyframes for each drawn pixel, at the present state."""
         return float(np.median([_cost(frame) for frame in self._gather()]))
 
     def solve(self) -> tuple[Rig, SelfCalibrationReport, dict[str, Floats]]:
-        """The rig at the end, how good it is, and by camera but the first the covariance (6,6) of its motion.
+        """The final rig, its quality, and by camera but the first the covariance (6,6) of its motion.
 
         Raises ConfigError when too little agrees.
         """
         p, scene = self._p, self._scene
-        kept: list[tuple[tuple[Camera, ...], Floats]] = []
+        history: list[tuple[tuple[Camera, ...], Floats]] = []
         for i in range(p.rounds):
             self._step(scene, self._gather())
             if i >= p.rounds - p.averaged:
-                kept.append((tuple(scene.cameras), scene.factors))
+                history.append((tuple(scene.cameras), scene.factors))
         scene.cameras = [
-            average_cameras([cameras[i] for cameras, _ in kept]) for i in range(len(scene.cameras))
+            average_cameras([cameras[i] for cameras, _ in history])
+            for i in range(len(scene.cameras))
         ]
-        scene.factors = np.mean([factors for _, factors in kept], axis=0)
+        scene.factors = np.mean([factors for _, factors in history], axis=0)
         scene.states = [replace(state, factors=scene.factors) for state in scene.states]
         for _ in range(p.polish):
             self._follow(scene, self._evidence(self._gather()), np.zeros(self._n))
         rows = self._gather()
         covariance: Floats = np.asarray(
-            np.linalg.inv(self._informed(self._evidence(rows)).H), dtype=np.float64
+            np.linalg.inv(self._with_prior(self._evidence(rows)).H), dtype=np.float64
         )
         covariances = {
             camera.name: covariance[k : k + N_CAMERA, k : k + N_CAMERA]
@@ -167,19 +167,19 @@ class JointSolver:
         ]
 
     def _evidence(self, rows: Sequence[Sequence[BodyRows]]) -> "_Evidence":
-        """What all keyframes say together. Raises ConfigError when too few agree with the body."""
+        """Normal equations of all keyframes. Raises ConfigError when too few agree with the body."""
         p = self._p
         n = self._body.model.n_pose
         out = _Evidence(np.zeros((self._n, self._n)), np.zeros(self._n), [])
         tolerable = p.tolerated_cost * float(np.median([_cost(frame) for frame in rows]))
-        for frame, seen in zip(rows, self._views, strict=True):
+        for frame, frame_views in zip(rows, self._views, strict=True):
             if _match(frame) < p.least_match or _cost(frame) > tolerable:
                 out.follows.append(None)
                 continue
             Hpp, bp = np.diag(self._pose_information()), np.zeros(n)
             Hps, Hss = np.zeros((n, self._n)), np.zeros((self._n, self._n))
             bs = np.zeros(self._n)
-            for row, view in zip(frame, seen, strict=True):
+            for row, view in zip(frame, frame_views, strict=True):
                 J = self._columns(row, view.index)
                 Hpp += row.H[:n, :n]
                 Hps += row.H[:n] @ J
@@ -191,7 +191,7 @@ class JointSolver:
             out.H += Hss - Hps.T @ back
             out.b += bs - Hps.T @ own
             out.follows.append((back, own))
-        counted = sum(one is not None for one in out.follows)
+        counted = sum(follow is not None for follow in out.follows)
         if counted < p.least_keyframes:
             raise ConfigError(
                 f"body and pictures agree in {counted} moments only, {p.least_keyframes} are needed",
@@ -203,32 +203,32 @@ class JointSolver:
         out.b *= gain
         return out
 
-    def _informed(self, found: "_Evidence") -> "_Evidence":
-        """The same with what is known of people. Changes it."""
+    def _with_prior(self, evidence: "_Evidence") -> "_Evidence":
+        """Adds the prior of people's shapes, in place."""
         n, prior = self._n_shape, 1.0 / self._body.sd**2
-        found.H[:n, :n] += np.diag(prior)
-        found.H += 1e-9 * np.eye(self._n)
-        found.b[:n] -= prior * (self._scene.factors - 1.0)
-        return found
+        evidence.H[:n, :n] += np.diag(prior)
+        evidence.H += 1e-9 * np.eye(self._n)
+        evidence.b[:n] -= prior * (self._scene.factors - 1.0)
+        return evidence
 
     def _step(self, scene: _Scene, rows: Sequence[Sequence[BodyRows]]) -> None:
         """One step of cameras and shape, the poses following.
 
-        All is moved by the same rows, with the poses eliminated (Schur complement). To alternate with
-        the tracker's own fit was tried: its cost differs a little, and cameras and poses then drift
-        together along what the pictures hardly tell.
+        All rows together give the step, with the poses eliminated (Schur complement). Alternating with the tracker's
+        own fit failed: its cost differs a little, so cameras and poses drift together along directions that the
+        pictures hardly constrain.
         """
-        found, n = self._informed(self._evidence(rows)), self._n_shape
-        step: Floats = np.asarray(np.linalg.solve(found.H, found.b), dtype=np.float64)
+        evidence, n = self._with_prior(self._evidence(rows)), self._n_shape
+        step: Floats = np.asarray(np.linalg.solve(evidence.H, evidence.b), dtype=np.float64)
         scene.factors = np.clip(scene.factors + step[:n], _SMALLEST, _LARGEST)
         for i in range(1, len(scene.cameras)):
             k = n + N_CAMERA * (i - 1)
             scene.cameras[i] = move_camera(scene.cameras[i], step[k : k + N_CAMERA])
-        self._follow(scene, found, step)
+        self._follow(scene, evidence, step)
 
-    def _follow(self, scene: _Scene, found: "_Evidence", step: Floats) -> None:
-        """The poses after a step of shape and cameras."""
-        for k, (state, follow) in enumerate(zip(scene.states, found.follows, strict=True)):
+    def _follow(self, scene: _Scene, evidence: "_Evidence", step: Floats) -> None:
+        """Update the poses after a step of shape and cameras."""
+        for k, (state, follow) in enumerate(zip(scene.states, evidence.follows, strict=True)):
             root, local = state.root_m, state.local_xyzw
             if follow is not None:
                 root, local = stepped(self._body.model, root, local, follow[1] - follow[0] @ step)
@@ -240,7 +240,7 @@ class JointSolver:
         return information
 
     def _columns(self, row: BodyRows, camera: int) -> Floats:
-        """(P, n): how the row's pose and shape columns make up those of shape and cameras."""
+        """(P, n): maps the row's pose and shape columns to those of shape and cameras."""
         n_pose = self._body.model.n_pose
         J = np.zeros((n_pose + self._n_shape, self._n))
         J[n_pose:, : self._n_shape] = np.eye(self._n_shape)
@@ -287,5 +287,5 @@ def _cost(frame: Sequence[BodyRows]) -> float:
 
 
 def _match(frame: Sequence[BodyRows]) -> float:
-    """Share of the drawn shirt that is confirmed, in the camera that confirms least."""
+    """The confirmed share of the drawn shirt, in the camera that confirms least."""
     return min(row.match for row in frame)

@@ -1,7 +1,7 @@
-"""The wearer followed by all cameras together, in the pictures that each of them classified alone.
+"""Tracks the wearer with all cameras together, in pictures that each camera classified alone.
 
-A lone camera has arms point the wrong way for seconds. Once it is known nearly where the cameras stand, both
-together tell; solving anew from there is what a second pass gains.
+A single camera has arms pointing the wrong way for seconds. With approximate extrinsics all cameras together resolve that;
+a second solution from these poses is more accurate.
 """
 
 from collections.abc import Sequence
@@ -25,15 +25,15 @@ from mocapd.shirt.garment import shirt_labels
 from mocapd.types import Camera, Floats, Rig
 
 _ITERATIONS = 6
-_LOOSE_S = 0.4  # a lone camera's body is held to as loosely as a prediction over this time
-_LONGEST_GAP_S = 0.2  # over which a pose is predicted
+_LOOSE_S = 0.4  # weight of a single camera's body, as of a prediction over this time
+_LONGEST_GAP_S = 0.2  # of a prediction
 _LEAST_MATCH = 0.6
 _FASTEST = 8.0  # of a pose, m/s and rad/s
 _DAMPING = 0.8
 
 
 class _Follower:
-    """Fits one observation after the other; remembers the last."""
+    """Fits one observation after the other, starting from the last result."""
 
     def __init__(self, model: BodyModel, cameras: Sequence[Camera], factors: Floats) -> None:
         params = FitParams()
@@ -51,7 +51,7 @@ class _Follower:
             starts = [replace(s, velocity=last.velocity) for s in starts]
         fits = [self._fitter.fit(s, views, _LOOSE_S, _ITERATIONS) for s in starts]
         if last is not None:
-            fits.append(self._predicted(last, views, dt_s))
+            fits.append(self._predict(last, views, dt_s))
         best = min(fits, key=lambda fit: fit.cost)
         self._last = None
         if best.match < _LEAST_MATCH:
@@ -64,19 +64,19 @@ class _Follower:
         return best
 
     def _before(self, t_ns: int) -> tuple[MotionState | None, float]:
-        """The state that this one is predicted from, and how long ago that was [s]."""
+        """The last state, and its age [s]."""
         if self._last is None:
             return None, 0.0
         dt_s = seconds(t_ns - self._last[0])
         return (self._last[1], dt_s) if 0.0 < dt_s < _LONGEST_GAP_S else (None, dt_s)
 
-    def sighting(self, fit: Fit, seen: PatchSighting, camera: Camera, dt_s: float) -> PatchSighting:
-        """What a camera saw, with the body that all of them see, dt_s later."""
+    def sighting(self, fit: Fit, own: PatchSighting, camera: Camera, dt_s: float) -> PatchSighting:
+        """A camera's sighting with the common body, dt_s later."""
         joints, quats = self._fitter.joints(gone_on(self._model, fit.state, dt_s))
         turned = rotations.multiply(rotations.from_matrix(camera.R), quats)
-        return replace(seen, joints_m=to_camera(camera, joints), quats_xyzw=turned)
+        return replace(own, joints_m=to_camera(camera, joints), quats_xyzw=turned)
 
-    def _predicted(self, last: MotionState, views: Sequence[View], dt_s: float) -> Fit:
+    def _predict(self, last: MotionState, views: Sequence[View], dt_s: float) -> Fit:
         state = gone_on(self._model, last, dt_s, _DAMPING)
         return self._fitter.fit(state, views, dt_s, _ITERATIONS)
 
@@ -84,21 +84,21 @@ class _Follower:
 def followed_together(
     observations: Sequence[PatchObservation], rig: Rig, model: BodyModel, factors: Floats
 ) -> list[PatchObservation]:
-    """The observations with the one body that all cameras see, which has these proportions (n_shape,).
+    """The observations with the common body of all cameras, which has these proportions (n_shape,).
 
-    Those of a lone camera, and those in which the pictures do not agree, are left empty.
+    Observations of a single camera, and those without agreement, become empty.
     """
     follower = _Follower(model, rig.cameras, factors)
     out: list[PatchObservation] = []
     for observation in observations:
-        seen = {i: observation[n] for i, n in enumerate(rig.names) if n in observation}
+        sightings = {i: observation[n] for i, n in enumerate(rig.names) if n in observation}
         together: dict[str, PatchSighting] = {}
-        if len(seen) >= 2:
-            t_ns = seen[min(seen)].t_ns
-            fit = follower.follow(Keyframe(t_ns, seen, None))
+        if len(sightings) >= 2:
+            t_ns = sightings[min(sightings)].t_ns
+            fit = follower.follow(Keyframe(t_ns, sightings, None))
             if fit is not None:
-                sure = np.maximum.reduce([s.confidence for s in seen.values()])
-                for i, sighting in seen.items():
+                sure = np.maximum.reduce([s.confidence for s in sightings.values()])
+                for i, sighting in sightings.items():
                     camera = rig.cameras[i]
                     later_s = seconds(sighting.t_ns - t_ns)
                     mine = follower.sighting(fit, sighting, camera, later_s)

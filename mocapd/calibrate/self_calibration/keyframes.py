@@ -1,4 +1,4 @@
-"""Which observations of a recording are worth solving extrinsics from, and where a body starts in it."""
+"""Selects observations of a recording for solving the extrinsics, and gives initial bodies for them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,17 +36,17 @@ def choose_keyframes(
     least_confidence: float = 0.3,
     at_worst: float = 0.1,
 ) -> list[Keyframe]:
-    """Up to `count` observations seen by at least two cameras, spread over time, well seen and slow.
+    """Up to `count` observations by at least two cameras, spread over time, with high confidence and low speed.
 
-    at_worst: the confidence that does when fewer than half of `count` have the other.
+    at_worst: the confidence limit when fewer than half of `count` meet the other one.
     """
-    chosen = _chosen(observations, names, count, least_confidence)
+    chosen = _select(observations, names, count, least_confidence)
     if len(chosen) < count / 2 and at_worst < least_confidence:
-        return _chosen(observations, names, count, at_worst)
+        return _select(observations, names, count, at_worst)
     return chosen
 
 
-def _chosen(
+def _select(
     observations: Sequence[PatchObservation],
     names: Sequence[str],
     count: int,
@@ -55,23 +55,23 @@ def _chosen(
     rated: list[tuple[float, Keyframe]] = []
     last: dict[int, PatchSighting] = {}
     for observation in observations:
-        seen = {i: observation[name] for i, name in enumerate(names) if name in observation}
-        if len(seen) >= 2:
-            first = min(seen)
-            worth = min(float(s.confidence[MARKS].mean()) for s in seen.values())
-            for i, sighting in seen.items():
+        sightings = {i: observation[name] for i, name in enumerate(names) if name in observation}
+        if len(sightings) >= 2:
+            first = min(sightings)
+            worth = min(float(s.confidence[MARKS].mean()) for s in sightings.values())
+            for i, sighting in sightings.items():
                 if i in last:
                     dt_s = max(seconds(sighting.t_ns - last[i].t_ns), 1e-3)
                     way = sighting.joints_m[MARKS, :2] - last[i].joints_m[MARKS, :2]
                     speed = float(np.linalg.norm(way, axis=1).mean()) / dt_s
                     worth /= 1.0 + speed / _STILL_M_S
                 else:
-                    worth = 0.0  # just found: not settled
+                    worth = 0.0  # just found: not converged
             if worth > 0.0 and all(
-                s.confidence[MARKS].mean() > least_confidence for s in seen.values()
+                s.confidence[MARKS].mean() > least_confidence for s in sightings.values()
             ):
-                rated.append((worth, Keyframe(seen[first].t_ns, seen, last.get(first))))
-        last = seen
+                rated.append((worth, Keyframe(sightings[first].t_ns, sightings, last.get(first))))
+        last = sightings
     if not rated:
         return []
     parts = np.array_split(np.arange(len(rated)), min(count, len(rated)))
@@ -79,7 +79,7 @@ def _chosen(
 
 
 def keyframe_views(keyframe: Keyframe, image_scales: Sequence[int]) -> list[View]:
-    """What each camera saw, at its own instant."""
+    """Each camera's picture at its own instant."""
     out = []
     for i, s in keyframe.sightings.items():
         x0, y0, x1, y1 = (edge // image_scales[i] for edge in s.roi_px)
@@ -91,19 +91,19 @@ def keyframe_views(keyframe: Keyframe, image_scales: Sequence[int]) -> list[View
 def initial_states(
     keyframe: Keyframe, cameras: Sequence[Camera], model: BodyModel, factors: Floats
 ) -> list[MotionState]:
-    """The body as each camera alone saw it, in the world, moved to where all see its marks."""
-    seen = sorted(keyframe.sightings)
-    xy = np.stack([keyframe.sightings[i].marks_xy for i in seen])
-    weights = np.stack([keyframe.sightings[i].confidence[MARKS] for i in seen])
-    points, _ = triangulate([cameras[i] for i in seen], xy, weights)
-    velocity = _velocity(keyframe, cameras[seen[0]], model)
+    """The body of each camera alone, in the world, moved to its triangulated marks."""
+    sightings = sorted(keyframe.sightings)
+    xy = np.stack([keyframe.sightings[i].marks_xy for i in sightings])
+    weights = np.stack([keyframe.sightings[i].confidence[MARKS] for i in sightings])
+    points, _ = triangulate([cameras[i] for i in sightings], xy, weights)
+    velocity = _velocity(keyframe, cameras[sightings[0]], model)
     out = []
-    for i in seen:
+    for i in sightings:
         sighting, camera = keyframe.sightings[i], cameras[i]
         joints = from_camera(camera, sighting.joints_m)
         offset = points - joints[MARKS]
-        known = np.isfinite(offset).all(axis=1)
-        shift = np.median(offset[known], axis=0) if known.any() else np.zeros(3)
+        valid = np.isfinite(offset).all(axis=1)
+        shift = np.median(offset[valid], axis=0) if valid.any() else np.zeros(3)
         out.append(
             MotionState(
                 joints[0] + shift, _local(sighting, camera, model), velocity, factors.copy(),
@@ -120,7 +120,7 @@ def _local(sighting: PatchSighting, camera: Camera, model: BodyModel) -> Floats:
 
 
 def _velocity(keyframe: Keyframe, camera: Camera, model: BodyModel) -> Floats:
-    """Of the pose (n_pose,) per second, as the first camera saw it."""
+    """Of the pose (n_pose,) per second, from the first camera."""
     now, before = keyframe.sightings[min(keyframe.sightings)], keyframe.before
     if before is None:
         return np.zeros(model.n_pose)

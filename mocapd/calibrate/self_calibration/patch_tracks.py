@@ -1,4 +1,4 @@
-"""The wearer as each camera sees them alone: body, classified patches and marks, before any extrinsics are known."""
+"""Tracks the wearer in each camera alone: body, classified patches and marks, before extrinsics exist."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,8 +17,8 @@ from mocapd.tracking.body_tracker import BodyTracker
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig, Tracking
 
-# The body's own points that one camera can place in its picture: joint centres, because the middle
-# of what is seen of a patch is another point of the cloth from every side.
+# Points of the body with a well-defined image in one camera: joint centres, because the centre of the
+# visible part of a patch is another point of the cloth from every side.
 MARKS = np.array(
     [
         INDEX[name]
@@ -32,7 +32,7 @@ MARKS = np.array(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PatchSighting:
-    """The body that one camera saw at one instant, in that camera's frame.
+    """The body in one camera at one instant, in that camera's frame.
 
     joints_m (J,3), quats_xyzw (J,4) from the T-pose's axes to the camera's, confidence (J,); ids (h,w): the classified
     picture over roi_px (x0, y0, x1, y1 of the frame).
@@ -57,7 +57,7 @@ PatchObservation = Mapping[str, PatchSighting]  # by camera, of one frame set
 
 
 def place_nominally(bare_cameras: Sequence[Camera]) -> tuple[Camera, ...]:
-    """The cameras with their intrinsics alone: each where a lone webcam would stand."""
+    """The cameras with their intrinsics alone, each at the nominal pose of a single webcam."""
     out = []
     for camera in bare_cameras:
         guess = nominal_rig(camera.name, camera.size_px).cameras[0]
@@ -66,7 +66,7 @@ def place_nominally(bare_cameras: Sequence[Camera]) -> tuple[Camera, ...]:
 
 
 class PatchTracks:
-    """Follows the wearer in every camera by itself; fed frame sets, live or recorded."""
+    """Tracks the wearer in every camera separately; takes frame sets, live or recorded."""
 
     def __init__(
         self,
@@ -79,8 +79,8 @@ class PatchTracks:
     ) -> None:
         """Of `bare_cameras` only name, size, K and dist are read. white_balance: W (3,3) by camera name.
 
-        rig: where the cameras stand nearly; then the wearer is followed by all together, which reads
-        the pictures better than each alone can.
+        rig: approximate extrinsics; then all cameras together track the wearer, which is more accurate than each
+        alone.
         """
         if len(bare_cameras) < 2:
             raise ConfigError(
@@ -93,19 +93,19 @@ class PatchTracks:
         self._trackers = [
             BodyTracker(
                 "shirt",
-                one,
+                rig,
                 stature_m,
-                ShirtCue(one, stature_m, colour_model, white_balance, database),
+                ShirtCue(rig, stature_m, colour_model, white_balance, database),
                 None,
             )
-            for one in rigs
+            for rig in rigs
         ]
         self._shapes = [mean_shape(stature_m) for _ in rigs]
         self.observations: list[PatchObservation] = []
 
     def add(self, frames: FrameSet) -> PatchObservation:
-        """Follow one frame set: who saw the wearer, and how."""
-        seen: dict[str, PatchSighting] = {}
+        """Track one frame set: the sightings by camera."""
+        sightings: dict[str, PatchSighting] = {}
         for i, tracker in enumerate(self._trackers):
             mine = {n: f for n, f in frames.frames.items() if n in tracker.rig.names}
             if not mine:
@@ -120,7 +120,7 @@ class PatchTracks:
                 if camera.name not in track.evidence:
                     continue
                 camera_from_world_xyzw = rotations.from_matrix(camera.R)
-                seen[camera.name] = PatchSighting(
+                sightings[camera.name] = PatchSighting(
                     mine[camera.name].t_ns,
                     to_camera(camera, body.joints_m),
                     rotations.multiply(camera_from_world_xyzw, body.pose.quats_xyzw),
@@ -128,14 +128,14 @@ class PatchTracks:
                     track.evidence[camera.name],
                     track.roi_px[camera.name],
                 )
-        self.observations.append(seen)
-        return seen
+        self.observations.append(sightings)
+        return sightings
 
     def add_all(
         self, frames: Iterable[FrameSet], progress: Callable[[int], None] | None = None
     ) -> None:
-        """Follow all of a recording."""
-        for i, one in enumerate(frames):
-            self.add(one)
+        """Track all of a recording."""
+        for i, frame in enumerate(frames):
+            self.add(frame)
             if progress is not None:
                 progress(i + 1)

@@ -1,8 +1,8 @@
-"""Where a second camera stands relative to a first: the motion that lays its bodies upon the first's.
+"""Relative pose of two cameras: the rigid motion that aligns their bodies.
 
-Each camera alone fits a body of the typed stature, so this is metric at once. The textbook way, the
-essential matrix of the points that both see, was measured on the same marks and lost: a person in the
-middle of a room is small in depth, which left it 3 to 73 degrees off where this was 2.5 and 4.
+Each camera alone fits a body of the typed stature, so the result is metric at once. The textbook method, the essential
+matrix of common points, lost on the same marks: a person in the middle of a room has little depth, which left it 3 to 73
+degrees off where this was 2.5 and 4.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from mocapd.types import Floats
 
 _LEAST_POINTS = 80  # ten whole bodies
 _LEAST_SHARE = 0.4  # of the points that must agree
-_SCALE_M = 0.12  # a lone camera places a joint about so well, mostly in depth
+_SCALE_M = 0.12  # accuracy of a joint by a single camera, mostly in depth
 _NEAR_M = 0.3
 _ROUNDS = 20
 _MOVE = "walk about, turn and move the arms where both cameras see the shirt"
@@ -25,7 +25,7 @@ _MOVE = "walk about, turn and move the arms where both cameras see the shirt"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RelativePose:
-    """inliers (N,): which of the points given agree with it."""
+    """inliers (N,): mask of the given points that agree with it."""
 
     second_from_first: RigidTransform
     inliers: NDArray[np.bool_]
@@ -35,7 +35,7 @@ def relative_pose(first_m: Floats, second_m: Floats, weights: Floats) -> Relativ
     """From the same points (N,3) of a body in both cameras' frames, with weights (N,) >= 0.
 
     Least squares, re-weighted by Geman-McClure.
-    Raises ConfigError when the points do not tell: too few, or they do not agree.
+    Raises ConfigError for too few points, or points that do not agree.
     """
     if np.count_nonzero(weights > 0.0) < _LEAST_POINTS:
         raise ConfigError(

@@ -1,9 +1,9 @@
-"""A camera's place from sleeve rings: each arm's rings are points, as far from each other in every observation.
+"""A camera's pose from sleeve rings: each arm's rings are points at constant distances over all observations.
 
 Bundle adjustment over one camera, the distances between neighbouring rings, and all points, which are
 eliminated (Schur complement) [Triggs et al., Bundle adjustment - a modern synthesis, 2000, section 6.1].
-From afar the pictures alone leave the orbit of the camera about the wearer nearly free; that the arms
-keep their lengths is what tells it [Koenderink and van Doorn, Affine structure from motion, 1991].
+From afar the pictures alone leave the orbit of the camera about the wearer nearly free; the constant lengths of the
+arms determine it [Koenderink and van Doorn, Affine structure from motion, 1991].
 """
 
 from dataclasses import dataclass
@@ -21,18 +21,18 @@ from mocapd.types import Camera, Floats
 _POINT_SD_M = 0.004  # a ring's middle
 _LENGTH_SD_M = 0.007  # cloth shifts along the arm
 _SPREAD = np.array([0.02, 0.07, 0.09])  # of each length over people, of its mean
-# arms that count in full, and the most that one may count: their errors are alike from observation to observation
+# weight of all arms, and the most of one: their errors are correlated between observations
 _INDEPENDENT, _MOST = 30.0, 0.25
 _ROUNDS = 25
-_GENTLE = 3  # first rounds, before outliers are left out
+_GENTLE = 3  # first rounds, before rejecting outliers
 _POINT_TAIL, _LENGTH_TAIL = 4.0, 6.0  # Geman-McClure, squared standard deviations
 _LARGEST_STEP, _FARTHEST_M = 0.2, 0.3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RingSystem:
-    """Normal equations of camera motion and lengths, N_CAMERA + P - 1 unknowns: H, b, without the
-    points; back (G,3P,n), own (G,3P): how the points answer to a step, and their own."""
+    """Normal equations of camera motion and lengths, N_CAMERA + P - 1 unknowns: H, b, points eliminated; back
+    (G,3P,n), own (G,3P): derivative of the points by a step, and their own step."""
 
     H: Floats
     b: Floats
@@ -51,24 +51,24 @@ def lengths_m(stature_m: float) -> Floats:
 def place_by_rings(
     pairs: RingPairs, first: Camera, second: Camera, covariance: Floats, stature_m: float
 ) -> tuple[Camera, Floats]:
-    """The second camera, and the covariance (6,6) of its motion, from the rings and from what was
-    known: it stood as `second` with this covariance of its world motion (v, omega)."""
+    """The second camera, and the covariance (6,6) of its motion, from the rings and its prior: pose `second` with this
+    covariance of its world motion (v, omega)."""
     usual = lengths_m(stature_m)
     spread = np.zeros(N_CAMERA + len(usual))
     spread[N_CAMERA:] = (_SPREAD * usual) ** -2
     information = np.diag(spread)
     information[:N_CAMERA, :N_CAMERA] = np.linalg.inv(covariance)
-    gain = min(_MOST, _INDEPENDENT / max(len(pairs.seen), 1))
+    gain = min(_MOST, _INDEPENDENT / max(len(pairs.visible), 1))
     camera, lengths = second, usual.copy()
     points = _start(pairs, first, second)
     H = information
     for i in range(_ROUNDS):
-        found = ring_system(pairs, first, camera, lengths, points, robust=i >= _GENTLE)
+        system = ring_system(pairs, first, camera, lengths, points, robust=i >= _GENTLE)
         away = np.concatenate([_motion(second, camera), lengths - usual])
-        H = gain * found.H + information
-        step = np.linalg.solve(H, gain * found.b - information @ away)
+        H = gain * system.H + information
+        step = np.linalg.solve(H, gain * system.b - information @ away)
         step *= min(1.0, _LARGEST_STEP / max(float(np.abs(step).max()), 1e-12))
-        moved = (found.own - found.back @ step).reshape(points.shape)
+        moved = (system.own - system.back @ step).reshape(points.shape)
         far = np.linalg.norm(moved, axis=-1, keepdims=True)
         points = points + moved * np.minimum(1.0, _FARTHEST_M / np.maximum(far, 1e-9))
         camera = move_camera(camera, step[:N_CAMERA])
@@ -80,12 +80,12 @@ def ring_system(
     pairs: RingPairs, first: Camera, second: Camera, lengths: Floats, points: Floats, robust: bool
 ) -> RingSystem:
     """The rows of all rings and lengths; points (G,P,3) [m, world]."""
-    G, P = pairs.seen.shape
+    G, P = pairs.visible.shape
     n = N_CAMERA + P - 1
     Hxx, Hxc = np.zeros((G, 3 * P, 3 * P)) + 1e-2 * np.eye(3 * P), np.zeros((G, 3 * P, n))
     Hcc, bx, bc = np.zeros((n, n)), np.zeros((G, 3 * P)), np.zeros(n)
     for xy, camera in zip(pairs.xy, (first, second), strict=True):
-        r, J, weight = _seen_rows(pairs, xy, camera, points, robust)
+        r, J, weight = _ring_rows(pairs, xy, camera, points, robust)
         WJ = J * weight[..., None, None]
         for p in range(P):
             at = slice(3 * p, 3 * p + 3)
@@ -103,7 +103,7 @@ def ring_system(
         way = points[:, k + 1] - points[:, k]
         length = np.maximum(np.linalg.norm(way, axis=1), 1e-6)
         r_m = lengths[k] - length
-        weight = (pairs.seen[:, k] & pairs.seen[:, k + 1]) / _LENGTH_SD_M**2
+        weight = (pairs.visible[:, k] & pairs.visible[:, k + 1]) / _LENGTH_SD_M**2
         if robust:
             weight = weight * (1.0 + (r_m / _LENGTH_SD_M) ** 2 / _LENGTH_TAIL) ** -2
         row = np.zeros((G, 3 * P))
@@ -120,7 +120,7 @@ def ring_system(
     return RingSystem(H, bc - np.einsum("gxi,gx->i", Hxc, own), back, own)
 
 
-def _seen_rows(
+def _ring_rows(
     pairs: RingPairs, xy: Floats, camera: Camera, points: Floats, robust: bool
 ) -> tuple[Floats, Floats, Floats]:
     """Residuals (G,P,2), their derivatives (G,P,2,3) by the points, and weights (G,P)."""
@@ -130,15 +130,15 @@ def _seen_rows(
     J = perspective_jacobians(flat, depth) @ camera.R
     r = xy - flat
     sd = _POINT_SD_M / depth
-    weight = pairs.seen / sd**2
+    weight = pairs.visible / sd**2
     if robust:
         weight = weight * (1.0 + (r**2).sum(axis=-1) / sd**2 / _POINT_TAIL) ** -2
     return r, J, weight
 
 
 def _start(pairs: RingPairs, first: Camera, second: Camera) -> Floats:
-    """Points (G,P,3) where both rays meet; what was not seen is amid the arm."""
-    weights = np.broadcast_to(pairs.seen.astype(np.float64), pairs.xy.shape[:-1])
+    """Points (G,P,3) where both rays meet; invisible ones are at the middle of the arm."""
+    weights = np.broadcast_to(pairs.visible.astype(np.float64), pairs.xy.shape[:-1])
     points, _ = triangulate((first, second), pairs.xy, weights)
     middle = np.nanmean(points, axis=1, keepdims=True)
     middle = np.where(np.isfinite(middle), middle, np.nanmedian(points, axis=(0, 1)))
@@ -146,6 +146,6 @@ def _start(pairs: RingPairs, first: Camera, second: Camera) -> Floats:
 
 
 def _motion(before: Camera, after: Camera) -> Floats:
-    """(6,): the world motion that makes the one camera the other."""
+    """(6,): the world motion from the one camera to the other."""
     motion = camera_from_world(before).inverse() @ camera_from_world(after)
     return np.concatenate([motion.t_m, rotations.log(rotations.from_matrix(motion.R))])

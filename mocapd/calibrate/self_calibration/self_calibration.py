@@ -1,6 +1,6 @@
-"""The extrinsics from the wearer alone: keyframes are chosen, cameras placed, all solved together, gravity found.
+"""Extrinsics from the wearer alone: chooses keyframes, places cameras, solves all together, finds gravity.
 
-In two passes: in the second the poses start from where all cameras together see the wearer.
+In two passes: the second starts from the poses that all cameras together give.
 """
 
 from collections.abc import Mapping, Sequence
@@ -38,8 +38,8 @@ def extrinsics_from_body(
 ) -> tuple[Rig, SelfCalibrationReport]:
     """The rig in world coordinates: floor at y = 0, the wearer at the origin facing +Z at the start.
 
-    observations: from `PatchTracks` of the same cameras; near: where all stood before, which is tried too.
-    Raises ConfigError when the observations do not tell where the cameras stand.
+    observations: from `PatchTracks` of the same cameras; near: earlier extrinsics, as another initial value.
+    Raises ConfigError when the observations do not determine the extrinsics.
     """
     p = params if params is not None else SelfCalibrationParams()
     keyframes = choose_keyframes(
@@ -51,18 +51,20 @@ def extrinsics_from_body(
         old = {camera.name: camera for camera in near.cameras}
         before = [with_extrinsics(c, camera_from_world(old[c.name])) for c in bare_cameras]
         solvers.append(JointSolver(model, before, keyframes, p))
-    found = _solved(min(solvers, key=lambda solver: solver.cost), observations, stature_m, p)
-    rig, report = _again(*found, observations, model, p)
+    first_pass = _solve_pass(
+        min(solvers, key=lambda solver: solver.cost), observations, stature_m, p
+    )
+    rig, report = _again(*first_pass, observations, model, p)
     return align_with_gravity(rig, observations, stature_m, report.factors), report
 
 
-def _solved(
+def _solve_pass(
     solver: JointSolver,
     observations: Sequence[PatchObservation],
     stature_m: float,
     params: SelfCalibrationParams,
 ) -> tuple[Rig, SelfCalibrationReport]:
-    """One pass: by all of the body, then weighed against the sleeve rings of the lone trackers' observations."""
+    """One pass: by the whole body, then combined with the sleeve rings of the single cameras' observations."""
     rig, report, covariances = solver.solve()
     return _with_rings(
         rig, report, covariances, observations, stature_m, params.surface_uncertainty
@@ -76,14 +78,14 @@ def _again(
     model: BodyModel,
     params: SelfCalibrationParams,
 ) -> tuple[Rig, SelfCalibrationReport]:
-    """The second pass; the same as given when all cameras together see too little of the wearer."""
+    """The second pass; returns the input when all cameras together see too little of the wearer."""
     together = followed_together(observations, rig, model, report.factors)
     keyframes = choose_keyframes(together, rig.names, params.keyframes)
     if len(keyframes) < params.least_keyframes:
         return rig, report
     try:
         solver = JointSolver(model, rig.cameras, keyframes, params)
-        return _solved(solver, observations, model.stature_m, params)
+        return _solve_pass(solver, observations, model.stature_m, params)
     except ConfigError:
         return rig, report
 
@@ -96,16 +98,16 @@ def _with_rings(
     stature_m: float,
     surface_uncertainty: float,
 ) -> tuple[Rig, SelfCalibrationReport]:
-    """The same once every camera but the first has been weighed against the rings of the sleeves."""
+    """The same with every camera but the first combined with its sleeve rings."""
     first = rig.cameras[0]
     work = image_scales(rig.cameras, FitParams().work_width_px)
     cameras, uncertainties = [first], {}
     for other, image_scale in zip(rig.cameras[1:], work[1:], strict=True):
         pairs = ring_pairs(observations, (first, other), (work[0], image_scale))
-        known = surface_uncertainty**2 * covariances[other.name]
-        camera, covariance = other, known
-        if len(pairs.seen):
-            camera, covariance = place_by_rings(pairs, first, other, known, stature_m)
+        prior = surface_uncertainty**2 * covariances[other.name]
+        camera, covariance = other, prior
+        if len(pairs.visible):
+            camera, covariance = place_by_rings(pairs, first, other, prior, stature_m)
         cameras.append(camera)
         uncertainties[camera.name] = uncertainty_of(camera, centre(first), covariance)
     distance_m = {c.name: float(np.linalg.norm(centre(c) - centre(first))) for c in cameras[1:]}

@@ -1,8 +1,8 @@
-"""The rings in which neighbouring patches of a sleeve meet, found in a classified picture.
+"""Finds the rings between neighbouring patches of a sleeve in a classified picture.
 
-What is seen of a ring is half of it. It ends where the arm's outline is, and midway between its ends
-is the ring's own middle from wherever it is seen: exact for a circle in affine projection, within
-1 mm at 2 m. So it is one point of the arm to all cameras, and needs no model of the sleeve's surface.
+Half of a ring is visible. It ends at the arm's outline, and the point midway between its ends is the ring's own
+middle from any viewpoint: exact for a circle in affine projection, within 1 mm at 2 m. So it is one point of the arm for
+all cameras, and needs no model of the sleeve's surface.
 """
 
 from dataclasses import dataclass, replace
@@ -23,14 +23,14 @@ SIDES = ("left", "right")
 
 _STEP_PX = 0.5  # of samples, in work px
 _STEEPEST = 0.75  # sine of the arm's direction with the view
-_ACROSS_M, _BESIDE_M = 0.09, 0.02  # half of the window across the arm; cloth that must be there
+_ACROSS_M, _BESIDE_M = 0.09, 0.02  # half of the window across the arm; cloth required on each side
 _LEAST_M = 0.03
-_CONFIRMED = 0.5  # share of that cloth which has its colour
-_GAP = 5  # samples that a fold may take out of a row
-_BEND_SD = 0.12  # how well the ring's bend is known from the arm's direction, of half its width
+_CONFIRMED = 0.5  # least share of that cloth with its colour
+_GAP = 5  # samples that a fold may remove from a row
+_BEND_SD = 0.12  # uncertainty of the ring's bend from the arm's direction, of half its width
 _SLOPE_SD = 0.25
 _NOISE_PX = 1.0
-_SEEN = 0.7  # share of the ring's width along which the border was found
+_SEEN = 0.7  # least share of the ring's width with a border
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +51,7 @@ class _Ring:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Window:
-    """A picture's ids (U,V) turned along an arm about c (2,): across u (U,), along v (V,) in work px;
+    """A picture's ids (U,V) rotated along an arm about c (2,): across u (U,), along v (V,) in work px;
     n, a (2,): the picture's directions of u and v."""
 
     c: Floats
@@ -66,10 +66,10 @@ def sleeve_rings(
     sighting: PatchSighting, joints_m: Floats, camera: Camera, image_scale: int
 ) -> tuple[Floats, Floats]:
     """Middles (2 N_ALONG, 2) in undistorted normalised coordinates and half widths (2 N_ALONG,) [m],
-    left arm first; NaN where a ring is not seen whole.
+    left arm first; NaN for a ring that is not wholly visible.
 
-    joints_m (J,3): where the body is about, in the camera's frame; its arms' directions tell how a
-    ring bends. image_scale: frame px by work px.
+    joints_m (J,3): approximate body in the camera's frame; its arms' directions give the bend of a ring.
+    image_scale: frame px by work px.
     """
     xy, half_m = np.full((len(_RINGS), 2), np.nan), np.full(len(_RINGS), np.nan)
     alone = replace(camera, R=np.eye(3), t_m=np.zeros(3))
@@ -81,19 +81,19 @@ def sleeve_rings(
             continue
         px: Floats = project(alone, np.stack([at_m - 0.01 * along, at_m, at_m + 0.01 * along]))
         direction = px[2] - px[0]
-        found = _find(
+        result = _find(
             ring, sighting.ids, (px[1] - corner) / image_scale,
             direction / float(np.linalg.norm(direction)), tilt,
             float(at_m[2]) / float(camera.K[0, 0]) * image_scale,
         )  # fmt: skip
-        if found is not None:
-            middle, half_m[i] = found
+        if result is not None:
+            middle, half_m[i] = result
             xy[i] = normalised(camera, (middle * image_scale + corner)[None])[0]
     return xy, half_m
 
 
 def _place(ring: _Ring, joints_m: Floats) -> tuple[Floats, Floats]:
-    """Where a ring is (3,) [m], and the arm's direction (3,) there."""
+    """Position of a ring (3,) [m], and the arm's direction (3,) there."""
     a, b = (joints_m[INDEX[ring.side + bone]] for bone in ring.bone)
     along = (b - a) / max(np.linalg.norm(b - a), 1e-6)
     if ring.bends:
@@ -106,9 +106,9 @@ def _place(ring: _Ring, joints_m: Floats) -> tuple[Floats, Floats]:
 def _find(
     ring: _Ring, ids: NDArray[np.uint8], c: Floats, a: Floats, tilt: float, px_m: float
 ) -> tuple[Floats, float] | None:
-    """A ring's middle (2,) in work px and half its width [m], looked for about c along a (2,)."""
-    found: tuple[Floats, float] | None = None
-    for last in (False, True):  # again about what was found
+    """A ring's middle (2,) in work px and half its width [m]; searches about c along a (2,)."""
+    result: tuple[Floats, float] | None = None
+    for last in (False, True):  # again about the first result
         window = _window(ids, c, a, ring.reach_m / px_m, _ACROSS_M / px_m)
         border = _border(ring, window, px_m)
         if border is None:
@@ -122,15 +122,15 @@ def _find(
         if outline is None:
             return None
         middle, slope, half = outline
-        along, seen = _bend(window.u, v, good, middle, half, tilt)
-        if seen < (_SEEN if last else 0.5):
+        along, visible = _bend(window.u, v, good, middle, half, tilt)
+        if visible < (_SEEN if last else 0.5):
             return None
         c = c + (middle + slope * (along - about)) * window.n + along * window.a
         if not ring.bends:
             a = window.a + slope * window.n
             a = a / np.linalg.norm(a)
-        found = c, half * px_m
-    return found
+        result = c, half * px_m
+    return result
 
 
 def _window(ids: NDArray[np.uint8], c: Floats, a: Floats, reach: float, across: float) -> _Window:
@@ -142,8 +142,8 @@ def _window(ids: NDArray[np.uint8], c: Floats, a: Floats, reach: float, across: 
     h, w = ids.shape
     x, y = at[..., 0], at[..., 1]
     inside = (x >= 0) & (x < w) & (y >= 0) & (y < h)
-    seen = np.where(inside, ids[np.clip(y, 0, h - 1), np.clip(x, 0, w - 1)], 0).astype(np.uint8)
-    return _Window(c, n, a, u, v, seen)
+    visible = np.where(inside, ids[np.clip(y, 0, h - 1), np.clip(x, 0, w - 1)], 0).astype(np.uint8)
+    return _Window(c, n, a, u, v, visible)
 
 
 def _border(ring: _Ring, window: _Window, px_m: float) -> tuple[Mask, Floats] | None:
@@ -179,18 +179,18 @@ def _outline(
         near &= window.v < about - 1.0
     else:
         cloth = cloth | ring.after[window.ids]
-    found = []
+    rows = []
     for j in np.flatnonzero(near):
         run = _run(cloth[:, j])
         if run is not None and run[0] > 0 and run[1] < len(window.u):
             lower, upper = window.u[run[0]], window.u[run[1] - 1]
-            found.append((window.v[j] - about, (lower + upper) / 2, (upper - lower + _STEP_PX) / 2))
-    if len(found) < 3:
+            rows.append((window.v[j] - about, (lower + upper) / 2, (upper - lower + _STEP_PX) / 2))
+    if len(rows) < 3:
         return None
-    v, middle, half = np.array(found).T
+    v, middle, half = np.array(rows).T
     usual = float(np.median(half))
     good = np.abs(half - usual) < max(0.12 * usual, 0.8)
-    if np.count_nonzero(good) < max(3, 0.6 * len(found)):
+    if np.count_nonzero(good) < max(3, 0.6 * len(rows)):
         return None
     if ring.bends:
         return float(np.median(middle[good])), 0.0, usual
@@ -199,14 +199,14 @@ def _outline(
 
 
 def _run(cloth: Mask) -> tuple[int, int] | None:
-    """First and one past the last of the samples (U,) in one piece that are most of the arm."""
-    seen = np.flatnonzero(cloth)
-    if not len(seen):
+    """Bounds of the one piece of samples (U,) that is most of the arm."""
+    visible = np.flatnonzero(cloth)
+    if not len(visible):
         return None
-    breaks = np.flatnonzero(np.diff(seen) > _GAP + 1)
+    breaks = np.flatnonzero(np.diff(visible) > _GAP + 1)
     first = np.concatenate([[0], breaks + 1])
-    last = np.concatenate([breaks, [len(seen) - 1]])
-    start, end = seen[first], seen[last] + 1
+    last = np.concatenate([breaks, [len(visible) - 1]])
+    start, end = visible[first], visible[last] + 1
     centre = len(cloth) // 2
     worth = end - start - np.maximum(0, np.maximum(start - centre, centre - end))
     best = int(np.argmax(worth))
@@ -216,10 +216,10 @@ def _run(cloth: Mask) -> tuple[int, int] | None:
 def _bend(
     u: Floats, v: Floats, good: Mask, middle: float, half: float, tilt: float
 ) -> tuple[float, float]:
-    """Where along the arm the ends of a half ellipse are, and the share of its width that was found.
+    """Position along the arm of the ends of a half ellipse, and the share of its width with a border.
 
-    v = v0 + slope s + bend sqrt(1 - s^2) with s across, -1 to 1; the bend of a circle that is seen
-    under the angle asin(tilt) is half its width times tilt. Re-weighted by Geman-McClure.
+    v = v0 + slope s + bend sqrt(1 - s^2) with s across, -1 to 1; the bend of a circle viewed under the angle
+    asin(tilt) is half its width times tilt. Re-weighted by Geman-McClure.
     """
     s = (u - middle) / half
     used = good & (np.abs(s) < 0.93)
@@ -236,8 +236,8 @@ def _bend(
         fitted = np.linalg.solve(D.T @ (D * W) + np.diag(prior), (D * W).T @ v + usual)
         away = v - D @ fitted
         weight = (1.0 + (away / 0.8) ** 2) ** -2
-    seen = np.count_nonzero(np.abs(away) < 1.6) * _STEP_PX / (2 * 0.93 * half)
-    return float(fitted[0]), float(seen)
+    visible = np.count_nonzero(np.abs(away) < 1.6) * _STEP_PX / (2 * 0.93 * half)
+    return float(fitted[0]), float(visible)
 
 
 def _rings() -> tuple[_Ring, ...]:

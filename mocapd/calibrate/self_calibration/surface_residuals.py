@@ -1,9 +1,8 @@
-"""Non-rigid shape residuals: a body whose surface may be off from the mean body's by a few centimetres, here and there.
+"""Non-rigid shape residuals: a body whose surface may differ from the mean body's by a few centimetres locally.
 
-The factors of `body.shape` cannot make a real body in real cloth. What they miss is of the same
-size in every picture, so that no number of pictures averages it out, and where a camera stands would
-have to explain it. Here it gets unknowns of its own: smooth displacements, alike on both sides of the
-body, that move with the bones.
+The factors of `body.shape` cannot represent a real body in real cloth. The error is the same in every picture, so
+averaging does not remove it, and the camera poses would have to absorb it. So it gets unknowns of its own: smooth
+displacements, symmetric between both sides of the body, that move with the bones.
 """
 
 from dataclasses import dataclass, replace
@@ -28,15 +27,15 @@ _SIDES = ("left", "right")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FreeBody:
-    """model: with more shape factors, each of which less 1 is a displacement [m]; sd (N,): the spread
-    of every factor over people."""
+    """model: with more shape factors, each of which minus 1 is a displacement [m]; sd (N,): the spread of every factor
+    over people."""
 
     model: BodyModel
     sd: Floats
 
 
 def free_body(model: BodyModel, off_sd_m: float) -> FreeBody:
-    """The body of this model, its surface and shoulders off by `off_sd_m` [m] (standard deviation)."""
+    """The body of this model, with a deviation of surface and shoulders of `off_sd_m` [m] (standard deviation)."""
     surface = [*_torso(model), *_arms(model)]
     joints = [np.zeros_like(model.rest_m) for _ in surface]
     for way in (_Y, _Z):
@@ -103,4 +102,4 @@ def _of(model: BodyModel, *parts: int) -> Floats:
 
 def _hats(at: Floats, knots: list[float]) -> NDArray[np.float64]:
     """(K,V): 1 at a knot, falling to 0 at its neighbours; constant beyond the ends."""
-    return np.stack([np.interp(at, knots, one) for one in np.eye(len(knots))])
+    return np.stack([np.interp(at, knots, row) for row in np.eye(len(knots))])

@@ -1,1 +1,1 @@
-"""The offsets between the clocks of recordings, from the motion of the board that all of them show."""
+"""The offsets between the clocks of recordings, from the board's motion in all of them."""

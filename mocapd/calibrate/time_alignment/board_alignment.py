@@ -1,7 +1,7 @@
-"""The transform between two cameras that see one board, each by a lens that is known roughly.
+"""The transform between two cameras that see one board, each with roughly calibrated intrinsics.
 
-A focal length that is wrong by some percent stretches what a camera says along its axis. So the transform is not
-quite rigid: affine, and held near the rigid one.
+A focal length that is wrong by some percent stretches a camera's measurements along its axis. So the transform is not
+quite rigid: affine, and regularised towards the rigid one.
 """
 
 from dataclasses import dataclass
@@ -38,8 +38,8 @@ class Affine:
         return Affine(L, -np.einsum("...ij,...j->...i", L, self.t_m))
 
 
-def aligned(a_m: Floats, b_m: Floats, weight: Floats) -> Affine:
-    """a_from_b (K,) of least squares, of corners a_m (T,4,3) and b_m (T,K,4,3) with weights (T,K).
+def align_affine(a_m: Floats, b_m: Floats, weight: Floats) -> Affine:
+    """Least-squares a_from_b (K,) of corners a_m (T,4,3) and b_m (T,K,4,3) with weights (T,K).
 
     The rigid one first (Kabsch, Acta Cryst. A32, 1976), then the affine one near it.
     """

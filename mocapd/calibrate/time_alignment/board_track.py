@@ -1,4 +1,4 @@
-"""How the board moves before one camera: its outer corners over time, by that camera's lens alone."""
+"""The board's trajectory in one camera's frame: its outer corners over time, by that camera's intrinsics alone."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -8,20 +8,18 @@ import numpy as np
 from mocapd.geometry.rigid_transforms import RigidTransform, stack
 from mocapd.types import Floats, Ints
 
-_LONGEST_STEP = (
-    2.6  # of the usual one between two pictures; over a longer one nothing is interpolated
-)
+_LONGEST_STEP = 2.6  # of the usual step between two pictures; no interpolation over a longer one
 _SAME_S = 1e-4  # times this near are one time
-_UNEVEN = 0.5  # error of the board's interpolated place, as a part of its motion: above, it is not followed
+_UNEVEN = 0.5  # largest error of the board's interpolated place, as a part of its motion, of continuous pictures
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoardTrack:
     """T pictures with the board: times_s (T,) rising, points_m (T,4,3) its outer corners in the camera's frame,
     speed_mps (T,4,3) of them, indices (T,) of the pictures; focal_px; period_s of the camera's frames, step_s between
-    those that were looked at.
+    the examined ones.
 
-    `followed`: the pictures are near enough in time that the board's way between them is known.
+    `followed`: the pictures are near enough in time to interpolate the board's motion.
     """
 
     times_s: Floats
@@ -33,8 +31,8 @@ class BoardTrack:
     step_s: float
     followed: bool
 
-    def thinned(self, most: int) -> "BoardTrack":
-        """Evenly, to at most so many of its pictures."""
+    def thin(self, most: int) -> "BoardTrack":
+        """At most so many of its pictures, evenly."""
         rows = slice(None, None, max(1, -(-len(self.times_s) // most)))
         return replace(
             self,
@@ -45,7 +43,7 @@ class BoardTrack:
         )
 
     def at(self, times_s: Floats) -> Floats:
-        """(...,4,3) [m]: the corners at any times (...), NaN where the board was not followed then.
+        """(...,4,3) [m]: the corners at any times (...), NaN without a continuous track then.
 
         Cubic Hermite interpolation.
         """
@@ -65,8 +63,8 @@ class BoardTrack:
         near_start = np.abs(times_s - start_s) < _SAME_S
         near_end = np.abs(times_s - end_s) < _SAME_S
         between = (times_s > start_s) & (times_s < end_s)
-        known = between & (step_s <= _LONGEST_STEP * self.step_s) & self.followed
-        points[~(known | near_start | near_end)] = np.nan
+        interpolated = between & (step_s <= _LONGEST_STEP * self.step_s) & self.followed
+        points[~(interpolated | near_start | near_end)] = np.nan
         points[near_start] = self.points_m[after - 1][near_start]
         points[near_end] = self.points_m[after][near_end]
         out: Floats = points
@@ -106,7 +104,7 @@ def _speeds(times_s: Floats, points_m: Floats, longest_s: float) -> Floats:
     slope = np.diff(points_m, axis=0) / step_s[:, None, None]
     none = np.zeros((1, *points_m.shape[1:]))
     before, after = np.concatenate([none, slope]), np.concatenate([slope, none])
-    # a neighbour that is far off in time counts for nothing; the nearer of two counts more
+    # a distant neighbour has no weight; the nearer of two weighs more
     left = np.append(0.0, np.where(near, 1.0 / step_s, 0.0))[:, None, None]
     right = np.append(np.where(near, 1.0 / step_s, 0.0), 0.0)[:, None, None]
     speed: Floats = (left * before + right * after) / np.maximum(left + right, 1e-12)
@@ -114,7 +112,7 @@ def _speeds(times_s: Floats, points_m: Floats, longest_s: float) -> Floats:
 
 
 def _is_followed(times_s: Floats, points_m: Floats, longest_s: float) -> bool:
-    """Whether a picture's neighbours foretell it: not so of pictures taken one by one, board at rest."""
+    """Whether a picture's neighbours predict it; False for single pictures of a board at rest."""
     if len(times_s) < 5:
         return False
     whole_s = times_s[2:] - times_s[:-2]

@@ -1,4 +1,4 @@
-"""From the stamps of one camera's pictures to a time that all cameras share."""
+"""Maps the stamps of one camera's pictures to a time common to all cameras."""
 
 from dataclasses import dataclass
 
@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 from mocapd.calibrate.time_alignment.offset_search import PairOffsets
 from mocapd.types import Floats
 
-_UNSURE = 2.1  # steps between pictures, around a jump, in which it may have been as well
+_UNSURE = 2.1  # steps between pictures around a jump, the uncertainty of its time
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClockMap:
     """A picture stamped s [s] was taken at s - offset_s[j] in the time of another camera, in stretch j of it.
 
-    jump_s (J,): when stretches end, in that time, give or take unsure_s; offset_s (J+1,).
+    jump_s (J,): ends of stretches in that time, with an uncertainty of unsure_s; offset_s (J+1,).
     """
 
     jump_s: Floats
@@ -23,7 +23,7 @@ class ClockMap:
     unsure_s: float = 0.0
 
     def times(self, stamps_s: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-        """(N,) [s] in the other camera's time, and which of them are known: far enough from jumps."""
+        """(N,) [s] in the other camera's time, and which of them are reliable: far enough from jumps."""
         starts = np.concatenate([[-np.inf], self.jump_s])
         ends = np.concatenate([self.jump_s, [np.inf]])
         out = np.full(len(stamps_s), np.nan)

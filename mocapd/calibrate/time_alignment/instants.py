@@ -1,4 +1,4 @@
-"""Pictures of all cameras gathered by instant: which belong to one position of the board."""
+"""Groups the pictures of all cameras by instant: those of one position of the board."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,10 +8,8 @@ import numpy as np
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.types import Floats, Ints
 
-IN_STEP = (
-    0.1  # instants, up to which pictures are taken for simultaneous without following the board
-)
-_BURST = 5  # positions next to each other, from which the motion of the one in the middle is known
+IN_STEP = 0.1  # instants; pictures with less delay count as simultaneous without a trajectory of the board
+_BURST = 5  # successive positions, which give the motion at the middle one
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,9 +39,9 @@ def gather(
     most: int,
     in_step: bool,
 ) -> Instants:
-    """Instants every `period_s` from `start_s` on, each picture with the nearest; of several pictures of one camera
-    the nearest. More than `most` instants are thinned: evenly, which shows the board at the most places, where the
-    cameras are in_step; else to bursts, so that motion can be followed."""
+    """Instants every `period_s` from `start_s` on, each with the nearest picture of each camera. More than `most`
+    instants are thinned: evenly for cameras in_step, which gives the board at the most places; otherwise to bursts, which
+    allow estimating motion."""
     lags: dict[str, dict[int, float]] = {name: {} for name in views}
     source: dict[str, dict[int, int]] = {name: {} for name in views}
     for name, own in views.items():
@@ -57,20 +55,20 @@ def gather(
                 lags[name][instant], source[name][instant] = lag, index
     every = np.array(sorted({instant for own in lags.values() for instant in own}), dtype=np.int64)
     late = max((abs(lag) for own in lags.values() for lag in own.values()), default=0.0)
-    kept = set(_thinned(every, most, in_step and late < IN_STEP).tolist())
+    chosen = set(_thin(every, most, in_step and late < IN_STEP).tolist())
     return Instants(
         {
-            name: {i: views[name][k] for i, k in sorted(own.items()) if i in kept}
+            name: {i: views[name][k] for i, k in sorted(own.items()) if i in chosen}
             for name, own in source.items()
         },
-        {name: {i: lag for i, lag in own.items() if i in kept} for name, own in lags.items()},
-        {name: {i: k for i, k in own.items() if i in kept} for name, own in source.items()},
+        {name: {i: lag for i, lag in own.items() if i in chosen} for name, own in lags.items()},
+        {name: {i: k for i, k in own.items() if i in chosen} for name, own in source.items()},
         period_s,
     )
 
 
-def _thinned(instants: Ints, most: int, in_step: bool) -> Ints:
-    """All, or so many evenly over the recording, not in_step in bursts of a few next to each other."""
+def _thin(instants: Ints, most: int, in_step: bool) -> Ints:
+    """All instants, or so many evenly over the recording; not in_step in bursts of a few successive ones."""
     if len(instants) <= most:
         return instants
     if in_step:

@@ -1,4 +1,4 @@
-"""The pictures of all cameras in one time: by their stamps, and by the board's motion where that contradicts them."""
+"""Aligns the pictures of all cameras in time: by their stamps, and by the board's motion where it contradicts them."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,9 +12,7 @@ from mocapd.calibrate.time_alignment.offset_search import PairOffsets, find_offs
 from mocapd.errors import ConfigError
 from mocapd.types import Floats
 
-MENDED = (
-    0.9  # periods, from which on an offset is mended here; the joint solution finds smaller ones
-)
+MENDED = 0.9  # periods; this step corrects larger offsets, the joint solution finds smaller ones
 _WORTH_SAYING = 0.5  # periods
 _MOST_JUMPS_PER_MINUTE = 30.0
 TIME_FIX = (
@@ -25,10 +23,10 @@ TIME_FIX = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AlignedTimes:
-    """times_s[camera][picture] [s] in the reference camera's time, of pictures whose time is known.
+    """times_s[camera][picture] [s] in the reference camera's time, of pictures with a reliable time.
 
-    `maps`: by camera, from its stamps to that time. farthest_s: largest offset between two cameras of which their
-    motion is sure, also of those that are too small to be mended.
+    `maps`: by camera, from its stamps to that time. farthest_s: largest reliable offset between two cameras, including
+    those that are too small to correct.
     """
 
     reference: str
@@ -38,7 +36,7 @@ class AlignedTimes:
     farthest_s: float
 
     def troubles(self, later_s: Mapping[str, float] | None = None) -> tuple[str, ...]:
-        """What the stamps do not say, camera by camera. later_s: how much later [s] each exposes than was found here."""
+        """Errors of the stamps for the user, by camera. later_s: additional delay [s] of each camera's exposure."""
         later_s = later_s or {}
         out = []
         for name, clock in self.maps.items():
@@ -46,7 +44,7 @@ class AlignedTimes:
                 continue
             more_s = later_s.get(name, 0.0) - later_s.get(self.reference, 0.0)
             clock = ClockMap(clock.jump_s, clock.offset_s - more_s)
-            out.append(f"{name} {described(clock, self.period_s[name], self.reference)}")
+            out.append(f"{name} {clock_text(clock, self.period_s[name], self.reference)}")
         return tuple(out)
 
 
@@ -55,14 +53,14 @@ def align_times(
 ) -> AlignedTimes:
     """`stamps_s[camera][picture]`: of all pictures with the board, by the files.
 
-    Raises ConfigError: a camera's pictures contradict those of another at the offset that the stamps give, and at
-    no other do they agree.
+    Raises ConfigError for a camera whose pictures contradict another's at the offset of their stamps, and agree at
+    no other.
     """
     pairs: dict[tuple[str, str], PairOffsets] = {}
     for a, b in combinations(tracks, 2):
-        found = find_offsets(tracks[a], tracks[b])
-        if found is not None:
-            pairs[a, b] = found
+        offsets = find_offsets(tracks[a], tracks[b])
+        if offsets is not None:
+            pairs[a, b] = offsets
     reference = _reference(list(tracks), pairs)
     maps: dict[str, tuple[ClockMap, ...]] = {reference: (SAME_CLOCK,)}
     while len(maps) < len(tracks):
@@ -71,7 +69,7 @@ def align_times(
         if placed is not None:
             offsets = pairs.get((placed, name)) or find_offsets(tracks[placed], tracks[name])
             if offsets is not None:
-                own = _checked(tracks, placed, name, offsets)
+                own = _checked_map(tracks, placed, name, offsets)
             maps[name] = (own, *maps[placed])
         else:
             maps[name] = (own,)
@@ -79,14 +77,14 @@ def align_times(
     for name in tracks:
         indices = sorted(stamps_s[name])
         stamps = np.array([stamps_s[name][index] for index in indices])
-        at_s, known = stamps, np.ones(len(stamps), bool)
-        for one in maps[name]:
-            at_s, inside = one.times(at_s)
-            known &= inside
+        at_s, reliable = stamps, np.ones(len(stamps), bool)
+        for clock in maps[name]:
+            at_s, inside = clock.times(at_s)
+            reliable &= inside
         times[name] = {
-            index: float(t) for index, t, good in zip(indices, at_s, known, strict=True) if good
+            index: float(t) for index, t, good in zip(indices, at_s, reliable, strict=True) if good
         }
-        merged[name] = _merged(maps[name])
+        merged[name] = _merge(maps[name])
     farthest_s = max(
         (float(np.abs(o.offset_s).max()) for o in pairs.values() if o.sure), default=0.0
     )
@@ -95,12 +93,12 @@ def align_times(
     )
 
 
-def described(clock: ClockMap, period_s: float, other: str) -> str:
-    """What the offset and the jumps of a camera are, as against another."""
+def clock_text(clock: ClockMap, period_s: float, other: str) -> str:
+    """The offset and the jumps of a camera relative to another."""
     parts = []
     offset_s = float(clock.offset_s[0])
     if abs(offset_s) >= _WORTH_SAYING * period_s:
-        # what was recorded from later on has lower stamps
+        # a recording that starts later has lower stamps
         side = f"behind {other} (it began later)" if offset_s < 0.0 else f"ahead of {other}"
         parts.append(
             f"is {abs(offset_s) / period_s:.1f} frames ({1e3 * abs(offset_s):.0f} ms) {side}"
@@ -116,21 +114,21 @@ def _is_mended(clock: ClockMap) -> bool:
     return len(clock.jump_s) > 0 or bool(clock.offset_s.any())
 
 
-def _merged(chain: Sequence[ClockMap]) -> ClockMap:
-    """Offsets and jumps of a chain of maps in one, for what is said."""
-    jump_s: Floats = np.concatenate([one.jump_s for one in chain])
-    change_s: Floats = np.concatenate([one.changes_s for one in chain])
+def _merge(chain: Sequence[ClockMap]) -> ClockMap:
+    """Offsets and jumps of a chain of maps as one, for the user's message."""
+    jump_s: Floats = np.concatenate([clock.jump_s for clock in chain])
+    change_s: Floats = np.concatenate([clock.changes_s for clock in chain])
     order = np.argsort(jump_s)
-    first_s = sum(float(one.offset_s[0]) for one in chain)
+    first_s = sum(float(clock.offset_s[0]) for clock in chain)
     return ClockMap(jump_s[order], first_s + np.concatenate([[0.0], np.cumsum(change_s[order])]))
 
 
 def _reference(names: Sequence[str], pairs: Mapping[tuple[str, str], PairOffsets]) -> str:
-    """The camera that jumps least against the others, and shares most with them."""
+    """The camera with the fewest jumps relative to the others, and the most common pictures."""
 
     def worth(name: str) -> tuple[int, int]:
         own = [offsets for pair, offsets in pairs.items() if name in pair and offsets.sure]
-        return -sum(len(one.jumps) for one in own), sum(one.pairs for one in own)
+        return -sum(len(offsets.jumps) for offsets in own), sum(offsets.pairs for offsets in own)
 
     return max(names, key=worth)
 
@@ -138,30 +136,30 @@ def _reference(names: Sequence[str], pairs: Mapping[tuple[str, str], PairOffsets
 def _next(
     names: Sequence[str], placed: Mapping[str, object], pairs: Mapping[tuple[str, str], PairOffsets]
 ) -> tuple[str | None, str]:
-    """A placed camera and one that is not, which together are surest; None: with nobody."""
+    """The most reliable pair of a placed camera and one that is not; None: no such pair."""
     best: tuple[tuple[bool, int], str, str] | None = None
     for (a, b), offsets in pairs.items():
         if (a in placed) == (b in placed):
             continue
-        known, new = (a, b) if a in placed else (b, a)
+        old, new = (a, b) if a in placed else (b, a)
         worth = (offsets.sure, offsets.pairs)
         if best is None or worth > best[0]:
-            best = worth, known, new
+            best = worth, old, new
     if best is None:
         return None, next(name for name in names if name not in placed)
     return best[1], best[2]
 
 
-def _checked(
+def _checked_map(
     tracks: Mapping[str, BoardTrack], placed: str, name: str, offsets: PairOffsets
 ) -> ClockMap:
-    """The map from what the motion says, or none where that adds nothing. Raises ConfigError."""
+    """The map by the motion, or none where that adds nothing. Raises ConfigError."""
     track = tracks[name]
     clock = clock_map(offsets)
     small = not len(clock.jump_s) and abs(float(clock.offset_s[0])) < MENDED * track.period_s
     if small or not offsets.refuted:
         return SAME_CLOCK
-    said = described(clock, track.period_s, placed)
+    said = clock_text(clock, track.period_s, placed)
     if not offsets.sure:
         raise ConfigError(f"the pictures are not of one moment: it perhaps {said}", name, TIME_FIX)
     minutes = (tracks[placed].times_s[-1] - tracks[placed].times_s[0]) / 60.0

@@ -1,1 +1,1 @@
-"""Whether a setup is good enough: what a tracker sees of somebody, measured and judged."""
+"""Verifies a setup: measures how well a tracker follows a person, and judges it."""

@@ -1,4 +1,4 @@
-"""A tracker that is looked over the shoulder: how far each camera's picture lies from the body."""
+"""A tracker wrapper that measures the distance of each camera's picture from the body."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -22,18 +22,18 @@ from mocapd.tracking.base import Track, Tracker
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Skeleton, Tracking
 
-EVERY = 4  # frames: one in so many is measured
-_RADIUS_PX = 12  # work px within which a colour is looked for
-_STEPS = 3  # Gauss-Newton; edges that are in place hold back the first
-_OUTLINE_STEPS = 6  # of an outline, whose inside says nothing
+EVERY = 4  # frames between measurements
+_RADIUS_PX = 12  # work px, search radius for a colour
+_STEPS = 3  # Gauss-Newton; edges in place hold back the first
+_OUTLINE_STEPS = 6  # of an outline, whose inside adds nothing
 _RIDGE = 1e-3
-_STALE_S = 0.2  # a pose older than this tells no velocity
+_STALE_S = 0.2  # an older pose gives no velocity
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraMeasure:
-    """shift_px (2,): the way from the drawn body to the seen one in pixels of the frame; shift_m: the
-    same at the body's distance [m]; match: share of the drawn shirt whose colour is seen."""
+    """shift_px (2,): from the drawn body to the one in the picture, in pixels of the frame; shift_m: the same at the
+    body's distance [m]; match: share of the drawn shirt with its colour in the picture."""
 
     shift_px: Floats
     shift_m: float
@@ -42,9 +42,9 @@ class CameraMeasure:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measure:
-    """One frame in which somebody is tracked. upright_rad: of hips to neck from the vertical; hips_m: height
-    above the floor; lengths: shoulders, upper arm and forearm against a mean body of this stature, NaN by outline,
-    where they are not learned."""
+    """One frame with a tracked person. upright_rad: of hips to neck from the vertical; hips_m: height above the
+    floor; lengths: shoulders, upper arm and forearm relative to a mean body of this stature, NaN by outline, which
+    does not constrain them."""
 
     t_ns: int
     cameras: Mapping[str, CameraMeasure]
@@ -54,23 +54,23 @@ class Measure:
 
 
 class MeasuringTracker:
-    """Steps another tracker, and measures every fourth frame of it; a Tracker itself.
+    """Steps another tracker, and measures every fourth frame; implements Tracker.
 
-    known: the wearer's shape before anything is learned.
+    shape: the wearer's shape before any learning.
     """
 
     def __init__(
         self,
         tracker: Tracker,
         rig: Rig,
-        known: BodyShape,
+        shape: BodyShape,
         add: Callable[[Measure], None],
         by_outline: bool = False,
     ) -> None:
-        """by_outline: what the tracker saw of the body is compared as one, not colour by colour."""
+        """by_outline: compares the body as one region, not colour by colour."""
         self.name, self.probe = tracker.name, tracker.probe
         self._tracker, self._rig, self._add = tracker, rig, add
-        stature_m = known.stature_m
+        stature_m = shape.stature_m
         self._mean = skeleton_of(mean_shape(stature_m))
         params = FitParams()
         self._work = image_scales(rig.cameras, params.work_width_px)
@@ -80,7 +80,7 @@ class MeasuringTracker:
         self._fitter = Fitter(model, labels, rig.cameras, self._work, params)
         self._rows = RowGatherer(self._fitter, _RADIUS_PX)
         self._index = {camera.name: i for i, camera in enumerate(rig.cameras)}
-        self._known = known_of(known, model.space)[0]
+        self._factors = known_of(shape, model.space)[0]
         self._last: tuple[int, Floats, Floats] | None = None
         self._turn = 0
 
@@ -98,14 +98,14 @@ class MeasuringTracker:
             local = local_from_global(self._mean, body.pose.quats_xyzw)
             self._turn += 1
             if self._turn % EVERY == 0:
-                self._add(self._measured(body, local, track, frames))
+                self._add(self._measure(body, local, track, frames))
             self._last = body.t_ns, body.pose.root_m, local
         return track
 
-    def _measured(self, body: BodyState, local: Floats, track: Track, frames: FrameSet) -> Measure:
+    def _measure(self, body: BodyState, local: Floats, track: Track, frames: FrameSet) -> Measure:
         assert body.pose is not None
         assert body.joints_m is not None
-        factors, lengths = self._known.copy(), np.full(3, np.nan)
+        factors, lengths = self._factors.copy(), np.full(3, np.nan)
         if not self._by_outline:
             lengths = _lengths(skeleton_of(track.shape)) / _lengths(self._mean)
             factors[1:4] = np.clip(lengths, 0.5, 2.0)
@@ -137,19 +137,19 @@ class MeasuringTracker:
             ids = (ids > 0).astype(np.uint8)
         late_s = seconds(frames.frames[name].t_ns - frames.t_ns)
         view = View(index, (x0, y0, x1, y1), ids, np.zeros_like(ids), late_s)
-        # an outline tells of nearness by its size only, which the clothes have a part in
+        # an outline shows distance by its size only, which clothes change
         ways = camera.R[:2] if self._by_outline else np.eye(3)
-        way_m, matches = np.zeros(3), []  # that this camera alone would move the whole body
+        way_m, matches = np.zeros(3), []  # the shift of the whole body by this camera alone
         for _ in range(_OUTLINE_STEPS if self._by_outline else _STEPS):
             rows = self._rows.gather(replace(state, root_m=state.root_m + way_m), view)
             H = rows.H[:3, :3] + _RIDGE * np.eye(3)
             way_m = way_m + ways.T @ np.linalg.solve(ways @ H @ ways.T, ways @ rows.b[:3])
             matches.append(rows.match)
         depth_m = max(float(to_camera(camera, state.root_m)[2]), 0.2)
-        aside_m = (camera.R @ way_m)[:2]
+        across_m = (camera.R @ way_m)[:2]
         focal_px = np.array([camera.K[0, 0], camera.K[1, 1]])
         return CameraMeasure(
-            focal_px * aside_m / depth_m, float(np.linalg.norm(aside_m)), matches[0]
+            focal_px * across_m / depth_m, float(np.linalg.norm(across_m)), matches[0]
         )
 
 

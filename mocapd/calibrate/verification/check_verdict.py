@@ -1,4 +1,4 @@
-"""From five seconds of tracking to a verdict on each camera and on the room."""
+"""Turns five seconds of tracking into a verdict on each camera and on the room."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ GOOD_PX, BAD_PX = 2.5, 6.0  # of a picture 640 px wide
 GOOD_CM, BAD_CM = 1.5, 3.5
 GOOD_MATCH, BAD_MATCH = 0.6, 0.4
 GOOD_DROPPED, BAD_DROPPED = 0.05, 0.2  # share of a camera's frames
-GOOD_RATE = 0.9  # of the rate that was asked for
+GOOD_RATE = 0.9  # of the requested rate
 _WIDTH_PX = 640
 _LEAN_RAD = math.radians(20.0)
 _FLOOR_M = 0.12
@@ -22,7 +22,7 @@ _SCALE = 0.08
 
 
 class Grade(StrEnum):
-    """How far a result may be relied on."""
+    """How reliable a result is."""
 
     GOOD = "good"
     DOUBTFUL = "doubtful"
@@ -31,15 +31,15 @@ class Grade(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class CameraVerdict:
-    """reprojection_px, cm: how far the seen shirt lies from the body of all cameras together; seen: share
-    of the frames with the person in which this camera saw them; dropped: share of its frames lost."""
+    """reprojection_px, cm: distance of the shirt in the picture from the body of all cameras together; visible_share:
+    share of the frames with a person in which this camera saw them; dropped: share of its frames lost."""
 
     camera: str
     grade: Grade
     reprojection_px: float
     cm: float
     match: float
-    seen: float
+    visible_share: float
     dropped: float
     rate_hz: float
     problem: Problem | None
@@ -47,10 +47,10 @@ class CameraVerdict:
 
 @dataclass(frozen=True, slots=True)
 class Delivery:
-    """What became of a camera's frames meanwhile, its rate and the rate it was asked for.
+    """A camera's frames during the check, its rate and the requested rate.
 
-    lost: before they reached this program; late: here, because their frame set had gone without them;
-    slow: why this machine does not keep up, and what helps; it, and not the camera, is then the cause of both."""
+    lost: before they reached this program; late: arrived after their frame set; slow: why this machine is too slow, and
+    a remedy; then the machine, not the camera, is the cause of both."""
 
     received: int
     lost: int
@@ -61,34 +61,38 @@ class Delivery:
     slow: tuple[str, str] | None = None
 
     @property
-    def dropped(self) -> float:
-        """Share that never arrived."""
+    def dropped_share(self) -> float:
+        """Share of frames that never arrived."""
         return self.lost / max(self.received + self.lost, 1)
 
     @property
     def too_late(self) -> float:
-        """Share that arrived too late."""
+        """Share of frames that arrived too late."""
         return self.late / max(self.received + self.lost, 1)
 
 
 def camera_verdict(
     camera: str, measures: Sequence[Measure], delivery: Delivery, has_shirt: bool = True
 ) -> CameraVerdict:
-    """How well this camera agrees with the others' body, and what to do when it does not. Without a shirt a body is judged
-    by its outline, which clothes and hair widen."""
+    """Agreement of this camera with the others' body, and a remedy where it is poor. Without a shirt the body's
+    outline is compared, which clothes and hair widen."""
     wide = 1.0 if has_shirt else _OUTLINE_WIDER
-    who = "shirt" if has_shirt else "body"
+    target = "shirt" if has_shirt else "body"
     own = [m.cameras[camera] for m in measures if camera in m.cameras]
-    seen = len(own) / max(len(measures), 1)
+    visible_share = len(own) / max(len(measures), 1)
     px, cm, match = _middle(own)
     scaled_px = px * _WIDTH_PX / delivery.width_px
     judged = [
         (
             _grade(scaled_px, wide * GOOD_PX, wide * BAD_PX),
-            _ROOM.format(who, f"{px:.1f} px"),
+            _ROOM.format(target, f"{px:.1f} px"),
             _ROOM_FIX,
         ),
-        (_grade(cm, wide * GOOD_CM, wide * BAD_CM), _ROOM.format(who, f"{cm:.1f} cm"), _ROOM_FIX),
+        (
+            _grade(cm, wide * GOOD_CM, wide * BAD_CM),
+            _ROOM.format(target, f"{cm:.1f} cm"),
+            _ROOM_FIX,
+        ),
         (
             _grade(1.0 - match, 1.0 - GOOD_MATCH, 1.0 - BAD_MATCH),
             f"only {100 * match:.0f} % of the shirt has its colours"
@@ -102,19 +106,20 @@ def camera_verdict(
     ]
     if not own:
         judged = [
-            (Grade.BAD, f"it did not see the {who}", "turn it to the person, then do Room again")
+            (Grade.BAD, f"it did not see the {target}", "turn it to the person, then do Room again")
         ]
     grades = list(Grade)
-    worst, what, fix = max(judged, key=lambda one: grades.index(one[0]))
+    worst, what, fix = max(judged, key=lambda entry: grades.index(entry[0]))
     problem = None if worst is Grade.GOOD else Problem(what, camera, fix)
     return CameraVerdict(
-        camera, worst, px, cm, match, seen, delivery.dropped, delivery.rate_hz, problem
+        *(camera, worst, px, cm, match, visible_share, delivery.dropped_share, delivery.rate_hz),
+        problem,
     )
 
 
 def _of_delivery(delivery: Delivery) -> list[tuple[Grade, str, str]]:
-    """Grade, what and fix of each of its figures. A machine that is too slow reads late what a camera sent in time."""
-    lost = f"{100 * delivery.dropped:.0f} % of its frames are lost"
+    """Grade, problem and remedy of each figure. A machine that is too slow reads frames late that came in time."""
+    lost = f"{100 * delivery.dropped_share:.0f} % of its frames are lost"
     late = f"{100 * delivery.too_late:.0f} % of its frames come too late"
     rate = f"{delivery.rate_hz:.0f} pictures a second, asked for {delivery.asked_hz:.0f}"
     lost_fix = "the camera or its USB bus loses them: use another USB port, without a hub"
@@ -124,18 +129,18 @@ def _of_delivery(delivery: Delivery) -> list[tuple[Grade, str, str]]:
     rate_fix = "more light, a shorter exposure, or a lower mode in the step Cameras"
     if delivery.slow is not None:
         why, fix = delivery.slow
-        lost, late, rate = (f"{one}: this machine is {why}" for one in (lost, late, rate))
+        lost, late, rate = (f"{text}: this machine is {why}" for text in (lost, late, rate))
         lost_fix = late_fix = rate_fix = fix
     is_fast = delivery.rate_hz >= GOOD_RATE * delivery.asked_hz
     return [
-        (_grade(delivery.dropped, GOOD_DROPPED, BAD_DROPPED), lost, lost_fix),
+        (_grade(delivery.dropped_share, GOOD_DROPPED, BAD_DROPPED), lost, lost_fix),
         (_grade(delivery.too_late, GOOD_DROPPED, BAD_DROPPED), late, late_fix),
         (Grade.GOOD if is_fast else Grade.DOUBTFUL, rate, rate_fix),
     ]
 
 
-# Shifts of an outline that count as those of the shirt's patches do: with the true rig 1 to 4 px and 0.3 to 2.0 cm, with a
-# camera turned up by 1 degree 3 to 7 px, by 2 degrees 5 to 11 px.
+# Limits for shifts of an outline, relative to the shirt's patches: with the true rig they are 1 to 4 px and 0.3 to 2.0 cm,
+# with a camera turned up by 1 degree 3 to 7 px, by 2 degrees 5 to 11 px.
 _OUTLINE_WIDER = 1.6
 _ROOM = "the {} is seen {} from where the other cameras have it"
 _ROOM_FIX = "do the step Room again; the camera may have been moved"
@@ -144,7 +149,7 @@ _ROOM_FIX = "do the step Room again; the camera may have been moved"
 def room_problems(
     measures: Sequence[Measure], hips_m: float, floor_known: bool
 ) -> tuple[Problem, ...]:
-    """What contradicts an upright person of the typed stature; `hips_m`: their height when standing."""
+    """Contradictions to an upright person of the typed stature; `hips_m`: their height in the T-pose."""
     if not measures:
         return ()
     lean_rad = float(np.median([m.upright_rad for m in measures]))
@@ -181,7 +186,7 @@ def room_problems(
 
 
 def verdict_json(verdict: CameraVerdict) -> Mapping[str, object]:
-    """As the page shows it; None for what could not be measured."""
+    """As the page shows it; None for figures without a measurement."""
 
     def figure(value: float, digits: int) -> float | None:
         return round(value, digits) if math.isfinite(value) else None
@@ -192,19 +197,19 @@ def verdict_json(verdict: CameraVerdict) -> Mapping[str, object]:
         "reprojection_px": figure(verdict.reprojection_px, 1),
         "cm": figure(verdict.cm, 1),
         "match": figure(verdict.match, 2),
-        "seen": round(verdict.seen, 2),
+        "seen": round(verdict.visible_share, 2),
         "dropped": round(verdict.dropped, 3),
         "rate_hz": round(verdict.rate_hz, 1),
     }
 
 
 def _middle(own: Sequence[CameraMeasure]) -> tuple[float, float, float]:
-    """Middle of px, cm and match: moments of trouble do not count."""
+    """Median of px, cm and match, robust against moments of trouble."""
     if not own:
         return math.nan, math.nan, math.nan
-    px = float(np.median([np.linalg.norm(one.shift_px) for one in own]))
-    cm = 100.0 * float(np.median([one.shift_m for one in own]))
-    return px, cm, float(np.median([one.match for one in own]))
+    px = float(np.median([np.linalg.norm(measure.shift_px) for measure in own]))
+    cm = 100.0 * float(np.median([measure.shift_m for measure in own]))
+    return px, cm, float(np.median([measure.match for measure in own]))
 
 
 def _grade(value: float, good: float, bad: float) -> Grade:

@@ -1,9 +1,9 @@
 """Motion as BVH: text, a hierarchy and a line of numbers a frame.
 
-Centimetres, as most programs take BVH for them; axes as ours, +Y up, facing +Z at rest; the rest pose is the T-pose.
-Angles in degrees, of rotations that are applied about the turned axes Z, X, Y in this order, as the channels say.
-Every joint has a place of its own in each frame, not only the hips, as bones change while the body is learned: six
-channels each, which importers of BVH take; those that want rotations alone use the offsets.
+Centimetres, as most programs expect; axes as in mocapd, +Y up, facing +Z at rest; the rest pose is the T-pose. Intrinsic
+rotations about Z, X, Y in this order, in degrees, as the channels say. Every joint has a translation in each frame, not
+only the hips, as bone lengths change while the tracker learns the body: six channels each, which BVH importers accept;
+those that support rotations alone use the offsets.
 """
 
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from mocapd.geometry import rotations
 from mocapd.types import Floats
 
 CM = 100.0
-END_CM = 8.0  # the tip of a bone without children, which the format wants
+END_CM = 8.0  # the tip of a bone without children, which the format requires
 _FRAMES = "Frames:"
 _CHANNELS = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
 
@@ -43,7 +43,7 @@ def bvh_text(motion: SampledMotion) -> str:
 
 
 def frames_in_bvh(path: Path) -> int:
-    """How many frames a file of ours holds: as it says, or fewer where lines are missing."""
+    """The number of frames in a file of ours: as it says, or fewer where lines are missing."""
     with path.open(encoding="utf-8") as file:
         said = next(line for line in file if line.startswith(_FRAMES))
         next(file)  # the time between them
@@ -55,7 +55,7 @@ def zxy_degrees(R: Floats) -> Floats:
     x = np.arcsin(np.clip(R[..., 2, 1], -1.0, 1.0))
     z = np.arctan2(-R[..., 0, 1], R[..., 1, 1])
     y = np.arctan2(-R[..., 2, 0], R[..., 2, 2])
-    # straight up or down only the sum of z and y shows: all of it is given to z
+    # gimbal lock at straight up or down: z gets the sum of z and y
     level = np.abs(R[..., 2, 1]) > 1.0 - 1e-9
     z = np.where(level, np.arctan2(R[..., 1, 0], R[..., 0, 0]), z)
     y = np.where(level, 0.0, y)

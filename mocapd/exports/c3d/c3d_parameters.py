@@ -1,6 +1,6 @@
 """The parameter section of a C3D file: groups of named values, little-endian, in blocks of 512 bytes.
 
-The format has no library that writes what we need: ezc3d clips the count of frames to 16 bits, and has no wheel for
+No library writes what is needed here: ezc3d clips the count of frames to 16 bits, and has no wheel for
 ARM. Layout and names by the manual at c3d.org.
 """
 
@@ -24,7 +24,7 @@ Groups = Mapping[str, Mapping[str, Value]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ParameterRecord:
-    """One value as it stands in a file: its `kind` is -1 characters, 2 integers of 16 bits, 4 floats."""
+    """One value of the file: its `kind` is -1 characters, 2 integers of 16 bits, 4 floats."""
 
     group: int
     name: str
@@ -33,7 +33,7 @@ class ParameterRecord:
 
     @property
     def numbers(self) -> Floats:
-        """Integers, which have no sign here, or floats."""
+        """Integers (unsigned here) or floats."""
         dtype = "<f4" if self.kind == _FLOATS else "<u2"
         return np.frombuffer(self.data, dtype).astype(float)
 
@@ -55,7 +55,7 @@ def pack_parameters(groups: Groups) -> bytes:
 
 
 def split_rows(name: str, rows: Sequence[str]) -> dict[str, Sequence[str]]:
-    """As NAME, NAME2 and so on, as the format splits what one value cannot hold."""
+    """Split into NAME, NAME2 and so on, as the format does with values that are too long."""
     width = max(len(row.encode()) for row in rows)
     most = min(_MOST_ROWS, _MOST_BYTES // max(1, width))
     parts = [rows[i : i + most] for i in range(0, len(rows), most)]

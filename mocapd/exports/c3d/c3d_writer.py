@@ -1,11 +1,11 @@
 """Motion as C3D: joints as points.
 
-Millimetres; axes as ours, which POINT:X_SCREEN (+X) and POINT:Y_SCREEN (+Y, or +Z with that up) say. A point of a gap is
-invalid: the format's residual of -1.
+Millimetres; axes as in mocapd, which POINT:X_SCREEN (+X) and POINT:Y_SCREEN (+Y, or +Z with z up) name. A point in a gap
+is invalid: it has the format's residual of -1.
 
-The header and POINT:FRAMES count frames in 16 bits. A longer motion has 65535 there, and its count where programs then
-look: in POINT:LONG_FRAMES as a float, in TRIAL:ACTUAL_END_FIELD as two 16-bit words, or in the length of the file,
-which therefore ends with the last frame. (POINT:FRAMES as a float, which the manual allows, ezc3d refuses.)
+The header and POINT:FRAMES count frames in 16 bits. A longer motion has 65535 there. Its true count is in the places
+that programs read next: POINT:LONG_FRAMES as a float, TRIAL:ACTUAL_END_FIELD as two 16-bit words, and the length of the
+file, which therefore ends with the last frame. (ezc3d refuses POINT:FRAMES as a float, which the manual allows.)
 """
 
 import struct
@@ -55,14 +55,14 @@ def write_c3d(motion: SampledMotion, path: Path) -> None:
 
 
 def frames_in_c3d(path: Path) -> int:
-    """How many frames a file of ours holds: as its parameters say, or fewer where it is cut short."""
+    """The number of frames in a file of ours: as its parameters say, or fewer where it is truncated."""
     with path.open("rb") as file:
         header = struct.unpack_from(_HEADER, file.read(BLOCK))
         points, data_block = int(header[2]), int(header[8])
         file.seek(BLOCK)
         section = file.read((data_block - 2) * BLOCK)
         bytes_there = file.seek(0, 2) - (data_block - 1) * BLOCK
-    numbers = {one.name: one.numbers for one in read_parameters(section) if one.kind > 0}
+    numbers = {entry.name: entry.numbers for entry in read_parameters(section) if entry.kind > 0}
     (count,) = numbers.get("LONG_FRAMES", numbers["FRAMES"])
     return min(int(count), bytes_there // (16 * points))
 

@@ -1,8 +1,8 @@
-"""Motion as a table: one line a frame, one column a number, in metres and in our own axes.
+"""Motion as a table: one line a frame, one column a number, in metres and in mocapd's axes.
 
-The columns are a time [s] since the first frame; whether it is a gap, 1 where nobody was tracked; and of each bone,
-after its name and an underscore, PARTS: its joint in the world [m], its rotation relative to the T-pose, its confidence
-0..1, and one standard deviation of its place [m], empty where that is unknown. +Y up, a person at rest faces +Z.
+The columns are the time [s] since the first frame; gap, 1 where no person was tracked; and the PARTS of each bone, as
+BONE_PART: its joint in the world [m], its rotation relative to the T-pose, its confidence 0..1, and one standard deviation
+of its position [m], empty where unknown. +Y up, a person at rest faces +Z.
 """
 
 import csv
@@ -44,6 +44,6 @@ def _cell(number: float) -> str:
 
 
 def frames_in_csv(path: Path) -> int:
-    """How many frames a file of ours holds."""
+    """The number of frames in a file of ours."""
     with path.open(encoding="utf-8") as file:
         return sum(1 for _ in file) - 1

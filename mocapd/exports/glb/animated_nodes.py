@@ -1,6 +1,6 @@
 """A skeleton as glTF nodes in the T-pose, and its motion as one animation of them; node j is joint j.
 
-Metres; glTF's axes are ours (right-handed, +Y up, a model faces +Z).
+Metres; glTF's axes equal mocapd's (right-handed, +Y up, a model faces +Z).
 """
 
 from collections.abc import Sequence
@@ -31,15 +31,15 @@ def root_of(motion: SampledMotion) -> int:
 
 
 def animation(
-    motion: SampledMotion, buffer: GltfBuffer, turned: Sequence[int], moved: Sequence[int]
+    motion: SampledMotion, buffer: GltfBuffer, rotating: Sequence[int], moving: Sequence[int]
 ) -> dict[str, Any]:
-    """turned, moved: joints whose rotation relative to the parent, and whose place there, are animated."""
+    """The animation; rotating, moving: joints with animated rotation and translation relative to the parent."""
     times = buffer.add(motion.times_s[:, None].astype("<f4"), has_range=True)
     samplers: list[dict[str, Any]] = []
     channels: list[dict[str, Any]] = []
     for path, joints, values in (
-        ("rotation", turned, _continuous(motion.local_xyzw)),
-        ("translation", moved, motion.local_positions_m),
+        ("rotation", rotating, _continuous(motion.local_xyzw)),
+        ("translation", moving, motion.local_positions_m),
     ):
         for joint in joints:
             output = buffer.add(values[:, joint].astype("<f4"))
@@ -49,7 +49,7 @@ def animation(
 
 
 def _continuous(quats_xyzw: Floats) -> Floats:
-    """The same rotations (F,J,4), each of the sign that is nearer to the one before: players mix neighbours."""
+    """The same rotations (F,J,4), each with the sign nearer to the frame before, as players interpolate neighbours."""
     turns = np.sign(np.vecdot(quats_xyzw[1:], quats_xyzw[:-1]))
     signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=0)
     out = quats_xyzw.copy()

@@ -1,7 +1,7 @@
 """A figure of capsules around a skeleton in the T-pose: what viewers of a GLB file show.
 
-Each bone is a capsule from its joint to each joint below it, of one rigid piece with the bone; where no joint is below, a
-short one goes on. Left is warm, right is cold, so that a mirrored figure is noticed.
+Each bone is a rigid capsule from its joint to each child joint; a leaf joint gets a short one. Left is warm, right is cold,
+so that a mirrored figure is noticeable.
 """
 
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ _WARM, _COLD, _GREY = (226, 139, 88), (88, 142, 226), (205, 205, 198)
 class CapsuleFigure:
     """V vertices in the world of the T-pose, T triangles.
 
-    places_m, normals (V,3); joints (V,): that the vertex is fixed to; colours (V,4): 0..255; triangles (T,3): corners,
+    places_m, normals (V,3); joints (V,): the joint of each vertex; colours (V,4): 0..255; triangles (T,3): vertex indices,
     anticlockwise from outside.
     """
 
@@ -67,7 +67,7 @@ def capsule_figure(skeleton: Skeleton) -> CapsuleFigure:
 
 
 def _ends(skeleton: Skeleton, joint: int) -> Floats:
-    """Where the capsules of a bone end (N,3) [m]."""
+    """End points of a bone's capsules (N,3) [m]."""
     below: Floats = skeleton.rest_m[skeleton.parents == joint]
     if len(below):
         return below
@@ -89,18 +89,18 @@ def _colour(name: str) -> tuple[int, int, int]:
 
 
 def _capsule(start_m: Floats, end_m: Floats, radius_m: float) -> tuple[Floats, Floats]:
-    """Places and normals (V,3), ring after ring from the start's pole to the end's."""
+    """Positions and normals (V,3), ring after ring from the start's pole to the end's."""
     along = end_m - start_m
     length = float(np.linalg.norm(along))
     along = along / length if length > 1e-6 else np.array([0.0, 1.0, 0.0])
-    aside = np.eye(3)[np.argmin(np.abs(along))]
-    aside = aside - (aside @ along) * along
-    aside /= np.linalg.norm(aside)
-    third = np.cross(along, aside)
+    second = np.eye(3)[np.argmin(np.abs(along))]
+    second = second - (second @ along) * along
+    second /= np.linalg.norm(second)
+    third = np.cross(along, second)
     up = np.linspace(-np.pi / 2, np.pi / 2, 2 * _RINGS + 1)
     up = np.insert(up, _RINGS, 0.0)  # the ring in the middle twice: at the start and at the end
     round_rad = np.arange(_AROUND) * (2.0 * np.pi / _AROUND)
-    outwards = np.cos(round_rad)[:, None] * aside + np.sin(round_rad)[:, None] * third
+    outwards = np.cos(round_rad)[:, None] * second + np.sin(round_rad)[:, None] * third
     normals = np.cos(up)[:, None, None] * outwards + np.sin(up)[:, None, None] * along
     centres = np.where(np.arange(len(up))[:, None] <= _RINGS, start_m, end_m)
     places = centres[:, None] + radius_m * normals
@@ -108,7 +108,7 @@ def _capsule(start_m: Floats, end_m: Floats, radius_m: float) -> tuple[Floats, F
 
 
 def _capsule_triangles() -> Ints:
-    """Corners (T,3) among a capsule's vertices; at a pole, where a ring is a point, one of a quad's two."""
+    """Vertex indices (T,3) of a capsule; at a pole, where a ring is a point, one triangle of each quad's two."""
     rings = 2 * _RINGS + 2
     corners = []
     for ring in range(rings - 1):

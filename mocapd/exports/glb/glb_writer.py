@@ -1,8 +1,8 @@
-"""Motion as an animated figure in a GLB file, glTF 2.0 in one piece.
+"""Motion as an animated figure in a GLB file (binary glTF 2.0).
 
-Each bone is a node whose rotation and place are animated, in the T-pose where nothing plays; a skin names them as joints
-and moves a figure of capsules. A node's `extras` have the joint's confidence: `confidence` is its mean, `seen` the share
-of the frames in which it is known, and `confidence_accessor` the number of an accessor with one value for each frame.
+Each bone is a node with animated rotation and translation, at rest in the T-pose; a skin names the nodes as joints and
+moves a figure of capsules. A node's `extras` have the joint's confidence: `confidence` is its mean, `seen` the share
+of the frames with a usable confidence, and `confidence_accessor` the number of an accessor with one value for each frame.
 """
 
 import json
@@ -14,19 +14,17 @@ import numpy as np
 
 from mocapd.exports.glb.animated_nodes import animation, root_of, skeleton_nodes
 from mocapd.exports.glb.capsule_figure import capsule_figure
-from mocapd.exports.glb.gltf_buffer import INDICES, VERTICES, GltfBuffer, packed
+from mocapd.exports.glb.gltf_buffer import INDICES, VERTICES, GltfBuffer, glb_file
 from mocapd.exports.sampled_motion import SampledMotion
 from mocapd.exports.unseen_limbs import LEAST_CONFIDENCE
 
 _MOST_BYTES = 2**32 - 1  # of the whole file, whose header counts them in 32 bits
-_DOCUMENT_BYTES = (
-    16_384  # at most: what is not of a frame, of the file as a whole and of each joint
-)
+_DOCUMENT_BYTES = 16_384  # upper bound of the JSON, for the file as a whole and for each joint
 _DISTINCT_TIMES = 2**23  # times must rise, which 32-bit floats of equal steps do up to here
 
 
 def most_glb_frames(joints: int) -> int:
-    """How many frames a file can hold."""
+    """The largest number of frames of a file."""
     of_frame = 4 + joints * (4 * (4 + 3) + 1)
     return min(_DISTINCT_TIMES, (_MOST_BYTES - _DOCUMENT_BYTES * (1 + joints)) // of_frame)
 
@@ -37,7 +35,7 @@ def write_glb(motion: SampledMotion, path: Path) -> None:
 
 
 def frames_in_glb(path: Path) -> int:
-    """How many frames a file of ours holds; 0 where it is cut short."""
+    """The number of frames in a file of ours; 0 for a truncated one."""
     with path.open("rb") as file:
         _, _, length, size, _ = struct.unpack("<4sIIII", file.read(20))
         document = json.loads(file.read(size))
@@ -74,11 +72,11 @@ def glb_bytes(motion: SampledMotion) -> bytes:
         ],
         "animations": [animation(motion, buffer, joints, joints)],
     }
-    return packed(document, buffer)
+    return glb_file(document, buffer)
 
 
 def _nodes(motion: SampledMotion, buffer: GltfBuffer) -> list[dict[str, Any]]:
-    """Of the joints, with their confidence."""
+    """Nodes of the joints, with their confidence."""
     confidence = np.clip(motion.confidence, 0.0, 1.0)
     nodes = skeleton_nodes(motion)
     for joint, node in enumerate(nodes):
@@ -92,7 +90,7 @@ def _nodes(motion: SampledMotion, buffer: GltfBuffer) -> list[dict[str, Any]]:
 
 
 def _mesh(motion: SampledMotion, buffer: GltfBuffer) -> dict[str, Any]:
-    """One mesh, each vertex fixed to one joint."""
+    """One mesh; each vertex follows one joint."""
     figure = capsule_figure(motion.skeleton)
     joints, weights = np.zeros((2, len(figure.joints), 4))
     joints[:, 0], weights[:, 0] = figure.joints, 1.0

@@ -1,6 +1,6 @@
-"""The binary part of a glTF file, and its packing into one GLB file.
+"""The binary part of a glTF file, and the GLB container.
 
-The few records of the format are written here: pygltflib would bring four packages of older make along for them.
+The few records of the format are written here: pygltflib would add four older packages.
 """
 
 import json
@@ -22,7 +22,7 @@ VERTICES, INDICES = 34962, 34963  # what a buffer view is for: ARRAY_BUFFER, ELE
 
 @dataclass(slots=True)
 class GltfBuffer:
-    """What the accessors lead to; each has a view of its own, at a multiple of four bytes."""
+    """The data of the accessors; each has a view of its own, aligned to four bytes."""
 
     data: bytearray = field(default_factory=bytearray)
     views: list[dict[str, int]] = field(default_factory=list)
@@ -35,9 +35,9 @@ class GltfBuffer:
         has_range: bool = False,
         normalized: bool = False,
     ) -> int:
-        """Rows (N,n) of float32, uint8 or uint16 as an accessor; its number.
+        """Add rows (N,n) of float32, uint8 or uint16 as an accessor; returns its index.
 
-        has_range: says the least and the greatest row, as times and positions must; normalized: integers stand for 0..1.
+        has_range: adds the minimum and maximum, as times and positions need; normalized: integers stand for 0..1.
         """
         rows = np.ascontiguousarray(values).reshape(len(values), -1)
         self.data += b"\0" * (-len(self.data) % 4)
@@ -58,8 +58,8 @@ class GltfBuffer:
         return len(self.accessors) - 1
 
 
-def packed(document: dict[str, Any], buffer: GltfBuffer) -> bytes:
-    """A GLB file of this document, to which asset, accessors and buffers are added."""
+def glb_file(document: dict[str, Any], buffer: GltfBuffer) -> bytes:
+    """A GLB file of this document with asset, accessors and buffers added."""
     document = {
         "asset": {"version": "2.0", "generator": f"mocapd {mocapd.__version__}"},
         **document,

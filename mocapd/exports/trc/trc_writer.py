@@ -1,7 +1,7 @@
 """Motion as TRC: joints as markers, tab-separated text, as OpenSim reads it.
 
-Millimetres; axes as ours, +Y up, which OpenSim's are too. A joint of a gap is left empty, which readers take for
-a marker that was not seen.
+Millimetres; axes as in mocapd, +Y up, which equal OpenSim's. A joint in a gap is empty, which readers take for a missing
+marker.
 """
 
 from pathlib import Path
@@ -13,7 +13,7 @@ _HEADER_LINES = 6
 
 
 def trc_text(motion: SampledMotion, name: str) -> str:
-    """The whole file; `name`: of the file, which it repeats."""
+    """The whole file; `name`: the file name, which the header repeats."""
     names = motion.skeleton.names
     count, rate = len(motion.joints_m), f"{motion.rate_hz:.10g}"
     empty = "\t" * (3 * len(names) - 1)
@@ -35,7 +35,7 @@ def trc_text(motion: SampledMotion, name: str) -> str:
 
 
 def frames_in_trc(path: Path) -> int:
-    """How many frames a file of ours holds: as its header says, or fewer where lines are missing."""
+    """The number of frames in a file of ours: as its header says, or fewer where lines are missing."""
     with path.open(encoding="utf-8") as file:
         header = [next(file) for _ in range(_HEADER_LINES)]
         return min(int(header[2].split("\t")[2]), sum(1 for _ in file))

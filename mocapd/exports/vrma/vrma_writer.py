@@ -1,8 +1,8 @@
 """Motion as VRMA: a GLB file with the extension VRMC_vrm_animation 1.0, which moves any VRM avatar.
 
 By its specification (vrm-c/vrm-specification, VRMC_vrm_animation-1.0): nodes in the T-pose of VRM, rotations of all
-bones, places of the hips alone, no mesh. Bones that nobody saw have a node, as the extension's humanoid needs them, and no
-motion, so that the avatar keeps its own there.
+bones, translations of the hips alone, no mesh. Bones that no camera saw have a node, which the extension's humanoid needs,
+and no motion, so that the avatar keeps its own there.
 """
 
 from pathlib import Path
@@ -10,7 +10,7 @@ from pathlib import Path
 from mocapd.body.bones import NAMES
 from mocapd.errors import InputError
 from mocapd.exports.glb.animated_nodes import animation, root_of, skeleton_nodes
-from mocapd.exports.glb.gltf_buffer import GltfBuffer, packed
+from mocapd.exports.glb.gltf_buffer import GltfBuffer, glb_file
 from mocapd.exports.sampled_motion import SampledMotion
 
 EXTENSION, _SPEC_VERSION = "VRMC_vrm_animation", "1.0"
@@ -47,4 +47,4 @@ def vrma_bytes(motion: SampledMotion) -> bytes:
             }
         },
     }
-    return packed(document, buffer)
+    return glb_file(document, buffer)

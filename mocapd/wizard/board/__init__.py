@@ -1,1 +1,1 @@
-"""What the steps that need a board share: looking for it, its form, advice, sightings."""
+"""Common parts of the steps with a board: detection, form, advice, sightings."""

@@ -1,4 +1,4 @@
-"""Why no board is found: asked in a job, now and then, of cameras that have not seen it for a while."""
+"""Diagnoses why cameras do not see the board, in a job, for cameras without a sighting for a while."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -24,10 +24,10 @@ from mocapd.types import Frame
 from mocapd.wizard.context import Context
 from mocapd.wizard.step import Tell
 
-_BLIND_NS = 2_000_000_000  # without the board, before it is asked
-_PAUSE_NS = 1_500_000_000  # between two askings
-_FORGET_NS = 6_000_000_000  # an answer this old is not shown any more
-_REMEMBER_NS = 15_000_000_000  # one that names what is seen instead of the board
+_BLIND_NS = 2_000_000_000  # without the board, before a diagnosis
+_PAUSE_NS = 1_500_000_000  # between two diagnoses
+_FORGET_NS = 6_000_000_000  # a diagnosis expires after this time
+_REMEMBER_NS = 15_000_000_000  # or this, if it names another object in the picture
 _FORM = "set the board above as it was printed"
 _LIVE_FIX = {
     **FIX,
@@ -47,86 +47,87 @@ class _Diagnosis:
 
 
 class BoardAdvice:
-    """Keeps when each camera last saw the board, and the last answer about each that does not."""
+    """Holds the time of each camera's last sighting, and the last diagnosis of each camera without one."""
 
     def __init__(self, context: Context, changed: Callable[[BoardSpec], None]) -> None:
-        """`changed` is called when the pictures show another variant of the board."""
+        """`changed`: called when the pictures show another variant of the board."""
         self._context, self._changed = context, changed
         self._saw_ns: dict[str, int] = {}
         self._asked_ns: dict[str, int] = {}
-        self._told: dict[str, _Diagnosis] = {}
+        self._diagnoses: dict[str, _Diagnosis] = {}
         self._begun_ns: int | None = None
         self._free_ns = 0
 
     def take(self, look: Look) -> None:
-        """Note who sees the board."""
-        for name in look.seen:
+        """Note the cameras that see the board."""
+        for name in look.observations:
             self._saw_ns[name] = look.t_ns
-            self._told.pop(name, None)
+            self._diagnoses.pop(name, None)
 
     def forget(self) -> None:
-        """The board is another one."""
-        self._told = {}
+        """Reset for another board."""
+        self._diagnoses = {}
         self._asked_ns = {}
 
     def ask(self, now_ns: int, frames: Mapping[str, Frame], spec: BoardSpec) -> None:
-        """Start a job about the camera that was blind and not asked for the longest, when it is time."""
+        """Start a job for the blind camera with the oldest diagnosis, when it is due."""
         if self._begun_ns is None:
             self._begun_ns = now_ns
         begun_ns = self._begun_ns
         blind = [name for name in frames if now_ns - self._saw_ns.get(name, begun_ns) > _BLIND_NS]
         if not blind or self._context.job is not None or now_ns < self._free_ns:
             return
-        name = min(blind, key=lambda one: self._asked_ns.get(one, 0))
+        name = min(blind, key=lambda camera: self._asked_ns.get(camera, 0))
         self._asked_ns[name] = now_ns
         self._free_ns = now_ns + _PAUSE_NS
-        # every variant is tried only while nobody sees the board as it is given
+        # try every variant only while no camera sees the board as given
         unseen = not self._saw_ns
         pixels = frames[name].pixels
 
-        def answer(_tell: Tell) -> tuple[BoardSpec, DetectionFailure | None]:
-            found = settle_variant(spec, [pixels]) if unseen else spec
-            detector = BoardDetector(found)
-            if found != spec or detector.find(pixels) is not None:
-                return found, None
+        def answer(_report: Tell) -> tuple[BoardSpec, DetectionFailure | None]:
+            settled = settle_variant(spec, [pixels]) if unseen else spec
+            detector = BoardDetector(settled)
+            if settled != spec or detector.find(pixels) is not None:
+                return settled, None
             return spec, diagnose_detection(detector, np.ascontiguousarray(pixels))
 
         def done(result: tuple[BoardSpec, DetectionFailure | None]) -> None:
-            found, told = result
-            if found != spec:
-                self._changed(found)
-            elif told is not None:
-                self._keep(name, _Diagnosis(told, now_ns))
+            settled, failure = result
+            if settled != spec:
+                self._changed(settled)
+            elif failure is not None:
+                self._keep(name, _Diagnosis(failure, now_ns))
 
         self._context.start_job(answer, done)
 
     def _keep(self, name: str, diagnosis: _Diagnosis) -> None:
-        """In place of the answer before, unless that one said more and is not old yet."""
-        before = self._told.get(name)
+        """Replace the last diagnosis, unless that one said more and has not expired."""
+        before = self._diagnoses.get(name)
         if before is not None and diagnosis.t_ns - before.t_ns <= _longest_ns(before):
             answers = (diagnosis.answer, before.answer)
             if most_telling(answers) is before.answer and before.answer.reason in TELLING:
                 return
-        self._told[name] = diagnosis
+        self._diagnoses[name] = diagnosis
 
     def problems(self, now_ns: int, wanted: Mapping[str, bool]) -> tuple[Problem, ...]:
         """Of cameras that are `wanted` to see the board and do not.
 
-        That a camera just does not see it is no trouble while another one does.
+        No problem while another camera sees it.
         """
         anyone = any(now_ns - t_ns < _BLIND_NS for t_ns in self._saw_ns.values())
         problems = []
-        for name, told in self._told.items():
-            reason = told.answer.reason
-            if not wanted.get(name, False) or now_ns - told.t_ns > _longest_ns(told):
+        for name, diagnosis in self._diagnoses.items():
+            reason = diagnosis.answer.reason
+            if not wanted.get(name, False) or now_ns - diagnosis.t_ns > _longest_ns(diagnosis):
                 continue
             if reason is Reason.NOTHING and anyone:
                 continue
-            what = f"{reason}" + (f": {told.answer.detail}" if told.answer.detail else "")
+            detail = diagnosis.answer.detail
+            what = f"{reason}" + (f": {detail}" if detail else "")
             problems.append(Problem(what, name, _LIVE_FIX[reason]))
         return tuple(problems)
 
 
 def _longest_ns(diagnosis: _Diagnosis) -> int:
-    """How long an answer is shown where none follows."""
+    """Lifetime of a diagnosis."""
     return _REMEMBER_NS if diagnosis.answer.reason in TELLING else _FORGET_NS

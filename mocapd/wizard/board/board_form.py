@@ -1,4 +1,4 @@
-"""The board as the page's form has it: lengths in millimetres, and the scale that a ruler shows."""
+"""Converts the board to and from the page's form: lengths in millimetres, and the scale by a ruler."""
 
 from dataclasses import replace
 
@@ -13,30 +13,30 @@ RULER_MM = 100.0
 
 
 def usual_board() -> BoardSpec:
-    """What `mocapd board` prints when nothing is asked for."""
+    """The board that `mocapd board` prints by default."""
     return fitted_board("A4", 5, 7, "DICT_4X4_1000")
 
 
 def board_of(said: Board, before: BoardSpec) -> BoardSpec:
-    """The board of the form; what is None stays as before. Raises ConfigError."""
+    """The board of the form; None leaves a value unchanged. Raises ConfigError."""
     named = msgspec.structs.asdict(said)
     lengths_m = {
         name.replace("_mm", "_m"): mm / 1000.0
         for name in ("square_mm", "marker_mm")
         if (mm := named.pop(name)) is not None
     }
-    told = {name: value for name, value in named.items() if value is not None}
-    return replace(before, **told, **lengths_m)
+    given = {name: value for name, value in named.items() if value is not None}
+    return replace(before, **given, **lengths_m)
 
 
 def scaled_board(spec: BoardSpec, ruler_mm: float) -> BoardSpec:
-    """The board as it was really printed, when its ruler's 100 mm measure `ruler_mm`. Raises ConfigError."""
+    """The board at its true size, when its ruler's 100 mm measure `ruler_mm`. Raises ConfigError."""
     scale = ruler_mm / RULER_MM
     return replace(spec, square_m=spec.square_m * scale, marker_m=spec.marker_m * scale)
 
 
 def same_print(a: BoardSpec, b: BoardSpec) -> bool:
-    """Whether the corners found of one are those of the other: all but the scale is the same."""
+    """Whether both have the same corners: all but the scale is equal."""
     return replace(a, square_m=0.1, marker_m=0.05) == replace(b, square_m=0.1, marker_m=0.05)
 
 

@@ -1,4 +1,4 @@
-"""The board in the cameras' newest pictures: looked for in a few of them with every tick."""
+"""Searches the board in the cameras' newest pictures, a few of them with every tick."""
 
 from collections.abc import Iterable, Mapping
 
@@ -10,49 +10,49 @@ from mocapd.types import Floats, Frame
 from mocapd.wizard.recent_frames import RecentFrames
 from mocapd.wizard.step import Shape
 
-# Indices of sightings are so far apart that no two pass for neighbouring frames of a recording, along
-# which the board's motion would be followed; in between are those of pictures that are of no sighting.
+# Indices of sightings are far apart, so that no two count as neighbouring frames of a recording, between which the board's
+# motion is estimated; indices in between are for pictures without a sighting.
 INDEX_STEP = 100
 _AT_ONCE = 2  # pictures searched in one tick
-_SHOWN_NS = 400_000_000  # how long corners stay drawn when the board is not found again
+_SHOWN_NS = 400_000_000  # how long corners stay drawn after the last detection
 
 
 class BoardWatch:
-    """Looks at the frames of one instant at a time, camera by camera. For one thread."""
+    """Searches the frames of one instant at a time, camera by camera. For one thread."""
 
     def __init__(
         self, hub: FrameHub, names: Iterable[str], spec: BoardSpec, first_index: int = 0
     ) -> None:
         self.names = tuple(names)
-        self.newest: dict[str, BoardObservation] = {}  # each camera's last sight of the board
+        self.newest: dict[str, BoardObservation] = {}  # each camera's last observation of the board
         self._hub, self._recent = hub, RecentFrames()
         self._detector = BoardDetector(spec)
         self._index = first_index
         self._frames: dict[str, Frame] = {}
         self._left: list[str] = []  # cameras of this instant not searched yet
-        self._seen: dict[str, BoardObservation] = {}
+        self._observations: dict[str, BoardObservation] = {}
 
     @property
     def spec(self) -> BoardSpec:
-        """The board that is looked for."""
+        """The wanted board."""
         return self._detector.spec
 
     def start(self) -> None:
-        """Be given every frame from now on."""
+        """Begin receiving frames."""
         self._hub.join(self._recent)
 
     def stop(self) -> None:
-        """No more frames."""
+        """Stop receiving frames."""
         self._hub.leave(self._recent)
 
     def change(self, spec: BoardSpec) -> None:
-        """Look for this board from now on."""
+        """Search for this board from now on."""
         self._detector = BoardDetector(spec)
         self.newest = {}
         self._left = []
 
     def look(self) -> Look | None:
-        """Search a few pictures; the instant when all of its pictures have been searched."""
+        """Search a few pictures; returns the instant once all of its pictures have been searched."""
         if not self._left and not self._begin():
             return None
         for name in self._left[:_AT_ONCE]:
@@ -61,16 +61,16 @@ class BoardWatch:
         if self._left:
             return None
         t_ns = max(frame.t_ns for frame in self._frames.values())
-        self.newest |= self._seen
-        return Look(self._index, t_ns, self._frames, self._seen)
+        self.newest |= self._observations
+        return Look(self._index, t_ns, self._frames, self._observations)
 
     def shapes(self, now_ns: int, still_px: Mapping[str, float]) -> dict[str, tuple[Shape, ...]]:
-        """The corners last found: good where they move less than `still_px`, else a hint."""
+        """The newest corners: good where they move less than `still_px`, else a hint."""
         drawn: dict[str, tuple[Shape, ...]] = {}
-        for name, seen in self.newest.items():
-            if now_ns - seen.t_ns <= _SHOWN_NS:
-                style = "good" if seen.motion_px <= still_px[name] else "hint"
-                drawn[name] = (Shape("points", points_of(seen.view.corners_px), style),)
+        for name, last in self.newest.items():
+            if now_ns - last.t_ns <= _SHOWN_NS:
+                style = "good" if last.motion_px <= still_px[name] else "hint"
+                drawn[name] = (Shape("points", points_of(last.view.corners_px), style),)
         return drawn
 
     def _begin(self) -> bool:
@@ -80,7 +80,7 @@ class BoardWatch:
         before = {name: frame.t_ns for name, frame in self._frames.items()}
         if not frames or all(before.get(name) == frame.t_ns for name, frame in frames.items()):
             return False
-        self._frames, self._left, self._seen = frames, list(frames), {}
+        self._frames, self._left, self._observations = frames, list(frames), {}
         self._index += INDEX_STEP
         return True
 
@@ -88,7 +88,7 @@ class BoardWatch:
         view = self._detector.find(frame.pixels, self._index)
         if view is not None:
             moved_px = motion_px(self.newest.get(frame.camera), view, frame.t_ns)
-            self._seen[frame.camera] = BoardObservation(view, frame.t_ns, moved_px)
+            self._observations[frame.camera] = BoardObservation(view, frame.t_ns, moved_px)
 
 
 def points_of(pixels: Floats) -> tuple[tuple[float, float], ...]:

@@ -1,4 +1,4 @@
-"""The job of the step Body: the wearer is tracked live until enough is seen, then the shape is solved."""
+"""The job of the step Body: tracks the wearer live until there are enough observations, then solves the shape."""
 
 import threading
 from collections.abc import Callable
@@ -21,12 +21,12 @@ from mocapd.types import BodyState, Bytes, Rig, Skeleton
 from mocapd.wizard.body.measured_body import body_picture
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.only_cameras import OnlyCameras
-from mocapd.wizard.patience import Patience
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Tell
+from mocapd.wizard.visibility_timeout import VisibilityTimeout
 
-READY, SEEN = 0.25, 0.85  # shares of the job: the tracker is ready, everything is seen
-_TIMEOUT_S = 0.2  # for a frame set, after which `stop` is looked at
+READY, SEEN = 0.25, 0.85  # shares of the job: the tracker is ready, enough observations
+_TIMEOUT_S = 0.2  # for a frame set; then `stop` is checked
 
 
 MakeTracker = Callable[[Draft, Path, Tell], ReadyTracker]
@@ -34,8 +34,8 @@ MakeTracker = Callable[[Draft, Path, Tell], ReadyTracker]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodyMeasurement:
-    """The wearer's shape, how it fits the room's scale, and by camera a picture (h,w,3) BGR of the last
-    moment with the body drawn over it."""
+    """The wearer's shape, its scale in the room, and by camera a picture (h,w,3) BGR of the last observation with the
+    body drawn over it."""
 
     shape: BodyShape
     fit: ShapeFit
@@ -45,7 +45,7 @@ class BodyMeasurement:
 
 @dataclass(slots=True, eq=False)
 class BodyWatch:
-    """Between the job and the step: the newest body, replaced whole, and an early end."""
+    """Shared by the job and the step: the newest body, replaced as a whole, and a request to stop."""
 
     body: tuple[BodyState, Skeleton] | None = None
     stop: threading.Event = field(default_factory=threading.Event)
@@ -56,22 +56,24 @@ def measure(
     draft: Draft,
     cache_dir: Path,
     watched: BodyWatch,
-    tell: Tell,
+    report: Tell,
     make_tracker: MakeTracker,
     params: BodyObservationParams,
 ) -> BodyMeasurement | None:
-    """Measure the wearer of a draft whose room, colours and stature are known; None when stopped.
+    """Measure the wearer of a draft that has room, colours and stature; None when stopped.
 
-    Raises InputError when too little was seen.
+    Raises InputError for too few observations.
     """
     assert draft.rig is not None
     assert draft.stature_m is not None
-    ready = make_tracker(draft, cache_dir, tell)
+    ready = make_tracker(draft, cache_dir, report)
     model = build_model(draft.stature_m)
     observations = BodyObservations(model, draft.rig.cameras, params)
-    if not _watch(hub, draft.rig, ready, observations, watched, tell, Patience(params.patience_s)):
+    if not _watch(
+        hub, draft.rig, ready, observations, watched, report, VisibilityTimeout(params.patience_s)
+    ):
         return None
-    tell("working out the proportions", SEEN)
+    report("working out the proportions", SEEN)
     fit = fit_shape(observations.observations, model, draft.rig.cameras)
     shown = fit.states[observations.pictured], observations.observations[observations.pictured]
     return BodyMeasurement(
@@ -86,19 +88,20 @@ def measure(
     )
 
 
-def measuring_tracker(draft: Draft, cache_dir: Path, tell: Tell) -> ReadyTracker:
-    """The draft's own, warm, and without what was measured before; takes seconds."""
-    tell("loading the tracker", 0.0)
+def measuring_tracker(draft: Draft, cache_dir: Path, report: Tell) -> ReadyTracker:
+    """The draft's tracker, warm, without earlier measurements; takes seconds."""
+    report("loading the tracker", 0.0)
     usual = TrackerSection()
-    known = calibration_of(replace(draft, factors=None)).assuming(usual.stature_m)
+    calibration = calibration_of(replace(draft, factors=None)).assuming(usual.stature_m)
     resources = cached(
-        cache_dir, lambda what, done, total: tell(f"making the {what}", 0.5 * READY * done / total)
+        cache_dir,
+        lambda what, done, total: report(f"making the {what}", 0.5 * READY * done / total),
     )
     return ready_tracker(
         shirt_tracker(usual.name),
-        known,
+        calibration,
         resources,
-        rehearsal=lambda done, total: tell(
+        rehearsal=lambda done, total: report(
             "preparing the tracker", READY * (0.5 + 0.5 * done / total)
         ),
     )
@@ -110,10 +113,10 @@ def _watch(
     ready: ReadyTracker,
     observations: BodyObservations,
     watched: BodyWatch,
-    tell: Tell,
-    patience: Patience,
+    report: Tell,
+    timeout: VisibilityTimeout,
 ) -> bool:
-    """Track the hub's frames until there are observations enough; False when stopped. Raises InputError."""
+    """Track the hub's frames until there are enough observations; False when stopped. Raises InputError."""
     tracker, shape = ready.tracker, ready.shape
     collector = FrameCollector(rig.names, hub.bundler)
     entry = OnlyCameras(collector, frozenset(rig.names))
@@ -122,7 +125,7 @@ def _watch(
         while observations.share < 1.0:
             if watched.stop.is_set():
                 return False
-            if patience.ended:
+            if timeout.is_over:
                 raise InputError(
                     f"the wearer was well seen for {observations.good_s:.0f} s only",
                     "body",
@@ -131,23 +134,23 @@ def _watch(
             began_ns = monotonic_ns()
             frames = collector.get(_TIMEOUT_S)
             if frames is None:
-                patience.looked(seconds(monotonic_ns() - began_ns), seen=False)
+                timeout.update(seconds(monotonic_ns() - began_ns), visible=False)
                 continue
             track = tracker.step(frames, shape)
             shape = track.shape
             watched.body = track.body, skeleton_of(shape)
-            seen = observations.add(track, frames)
-            patience.looked(seconds(monotonic_ns() - began_ns), seen=seen)
-            tell(_asked(seen, observations), READY + (SEEN - READY) * observations.share)
+            visible = observations.add(track, frames)
+            timeout.update(seconds(monotonic_ns() - began_ns), visible=visible)
+            report(_instruction(visible, observations), READY + (SEEN - READY) * observations.share)
         return True
     finally:
         hub.leave(entry)
         watched.body = None
 
 
-def _asked(seen: bool, observations: BodyObservations) -> str:
-    """What the wearer is to do now."""
-    if not seen:
+def _instruction(visible: bool, observations: BodyObservations) -> str:
+    """The next instruction for the wearer."""
+    if not visible:
         return "Stand where all cameras see the whole shirt, arms out"
     if not observations.bent:
         return "Arms out; now bend both elbows and stretch them again, slowly"

@@ -1,4 +1,4 @@
-"""The step Body: the stature is typed, the proportions are measured while the wearer bends the arms.
+"""The step Body: the wearer types the stature, and bends the arms while the proportions are measured.
 
 Its commands are `body_verbs.BODY`.
 """
@@ -29,7 +29,7 @@ from mocapd.wizard.step import Json, Scene, Shape, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 OLDEST_NS = (
-    200_000_000  # of a body that is drawn over the newest picture: arms move 20 cm in that time
+    200_000_000  # lifetime of the body drawn over the newest picture: arms move 20 cm in that time
 )
 
 
@@ -47,11 +47,11 @@ class BodyStep:
     ) -> None:
         self._context, self._make_tracker = context, make_tracker
         self._params = params if params is not None else BodyObservationParams()
-        self._watched: BodyWatch | None = None  # while a job measures
+        self._watched: BodyWatch | None = None  # during a measuring job
         self._measured: BodyMeasurement | None = None
         self._skipped = False
         self._measure_next = False
-        self._times = 0  # measured
+        self._times = 0  # completed measurements
         self._pictures: dict[str, bytes] = {}
         self._troubles: tuple[Problem, ...] = ()
         self._now_ns = 0
@@ -59,11 +59,11 @@ class BodyStep:
     # -- Step ------------------------------------------------------------------------------------
 
     def enter(self) -> None:
-        """What was typed and measured before stays."""
+        """Earlier input and measurements stay."""
         self._context.scene(Scene.ARM_BENDS)
 
     def tick(self, now_ns: int) -> None:
-        """Start the job that waits."""
+        """Start the pending job."""
         self._now_ns = now_ns
         if self._measure_next and self._context.job is None:
             self._measure_next = False
@@ -88,12 +88,12 @@ class BodyStep:
                 self._skipped = True
 
     def job_failed(self, error: MocapdError) -> None:
-        """It can be measured again, or skipped."""
+        """The user may measure again, or skip the step."""
         self._watched = None
         self._troubles = (Problem.of(error),)
 
     def leave(self) -> None:
-        """The job ends for itself."""
+        """The job ends by itself."""
         self._stop()
 
     # -- work ------------------------------------------------------------------------------------
@@ -123,7 +123,8 @@ class BodyStep:
                 self._watched = None
 
         context.start_job(
-            lambda tell: measure(hub, draft, cache_dir, watched, tell, make_tracker, params), done
+            lambda report: measure(hub, draft, cache_dir, watched, report, make_tracker, params),
+            done,
         )
 
     def _found(self, measured: BodyMeasurement) -> None:
@@ -148,7 +149,7 @@ class BodyStep:
         self._measure_next = False
 
     def _missing(self) -> Problem | None:
-        """Why it cannot be measured."""
+        """Why measuring is impossible."""
         draft = self._context.draft
         if draft.stature_m is None:
             return Problem("the stature is not known", "", "type it first")
@@ -160,7 +161,7 @@ class BodyStep:
             return Problem("the colours are not known", "", "do the step Colours first")
         if len(draft.rig.cameras) < 2:
             return Problem(
-                "one camera cannot tell size from distance", "", "go on with the stature alone"
+                "one camera cannot separate size from distance", "", "go on with the stature alone"
             )
         return None
 
@@ -169,7 +170,7 @@ class BodyStep:
     def view(self) -> StepView:
         """See Step."""
         draft = self._context.draft
-        state, sentence, progress = self._told()
+        state, sentence, progress = self._status()
         missing = self._missing()
         shape: BodyShape | None = None
         if draft.stature_m is not None:
@@ -202,14 +203,14 @@ class BodyStep:
         return self._watched is not None or self._measure_next
 
     def _overlays(self) -> Mapping[str, tuple[Shape, ...]]:
-        """The bones as they are tracked while it is measured, unless they are older than what the pictures show."""
+        """The tracked bones during measuring, unless they are older than the pictures."""
         rig = self._context.draft.rig
         shown = self._watched.body if self._watched is not None else None
         if rig is None or shown is None or self._now_ns - shown[0].t_ns > OLDEST_NS:
             return {}
         return {camera.name: bone_shapes(camera, *shown) for camera in rig.cameras}
 
-    def _told(self) -> tuple[StepState, str, float]:
+    def _status(self) -> tuple[StepState, str, float]:
         """State, sentence and progress."""
         draft = self._context.draft
         if draft.stature_m is None:

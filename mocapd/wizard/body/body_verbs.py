@@ -1,4 +1,4 @@
-"""What a person can say in the step Body: each verb with its arguments and their ranges."""
+"""Commands of the step Body, with their arguments and ranges."""
 
 from typing import Annotated
 
@@ -18,11 +18,11 @@ class Stature(Command, frozen=True):
 
 
 class MeasureBody(Command, frozen=True):
-    """Look at the wearer and work out the proportions; also again."""
+    """Measure the wearer's proportions, perhaps again."""
 
 
 class SkipBody(Command, frozen=True):
-    """Go on with the proportions that people of this stature have."""
+    """Go on with the mean proportions of this stature."""
 
 
 BODY: Verbs = {"stature": Stature, "measure": MeasureBody, "skip": SkipBody}

@@ -1,4 +1,4 @@
-"""The measured body drawn over the picture it was measured from."""
+"""Draws the measured body over a picture of the measurement."""
 
 import cv2
 import numpy as np

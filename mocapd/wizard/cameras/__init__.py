@@ -1,1 +1,1 @@
-"""The step Cameras: which there are, what is wrong with one, and its controls locked."""
+"""The step Cameras: checks the cameras and locks their controls."""

@@ -1,4 +1,4 @@
-"""What stays true of a draft when its cameras change."""
+"""Drops the parts of a draft that a change of cameras makes invalid."""
 
 from dataclasses import replace
 
@@ -6,21 +6,22 @@ from mocapd.wizard.draft import Draft, DraftCamera
 
 
 def with_cameras(draft: Draft, cameras: tuple[DraftCamera, ...]) -> Draft:
-    """The draft with these cameras. What belonged to others is dropped: the lens of a camera with
-    another size, colours of one that left or sees them through other controls, the room of a set
-    that is not the same."""
+    """The draft with these cameras, without the data of others: the lens of a camera with another size, colours of
+    one that left or has other controls, the room of another set of cameras."""
     if cameras == draft.cameras:
         return draft
     before = {camera.id: camera for camera in draft.cameras}
-    # without cameras before, what is there was read from the saved calibration of just these
-    same_size = {one.id for one in cameras if before.get(one.id, one).size_px == one.size_px}
+    # without cameras before, the data come from the saved calibration of just these
+    same_size = {
+        camera.id for camera in cameras if before.get(camera.id, camera).size_px == camera.size_px
+    }
     same_look = {
-        one.id
-        for one in cameras
-        if one.id in same_size and before.get(one.id, one).controls == one.controls
+        camera.id
+        for camera in cameras
+        if camera.id in same_size and before.get(camera.id, camera).controls == camera.controls
     }
     lenses = {name: lens for name, lens in draft.intrinsics.items() if name in same_size}
-    colours = {name: one for name, one in draft.colours.items() if name in same_look}
+    colours = {name: colours for name, colours in draft.colours.items() if name in same_look}
     draft = replace(
         draft,
         cameras=cameras,

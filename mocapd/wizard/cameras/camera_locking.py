@@ -1,4 +1,4 @@
-"""One camera on its way from open to locked: let it settle, lock it, and see that it stayed as it was."""
+"""Locks one camera's controls: lets the automatics settle, locks, and verifies that the picture stayed the same."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,12 +22,12 @@ _HUNTING_NS = 6 * NS_PER_S // 10  # at first the automatics look for their value
 _STEADY = 0.02  # relative change of brightness within half a second
 _EFFECT_NS = (
     45 * NS_PER_S // 100
-)  # until a control shows: frames under way, and the sensor's own delay
+)  # until a control takes effect: frames in transit, and the sensor's own delay
 _LOOK_NS = NS_PER_S // 4
 _BRIGHTNESS_TOLERANCE = 0.25
 _WARMTH_TOLERANCE = 0.15
-_CLOSE = 0.05  # what a search is content with
-_JUDGE_NS = 13 * NS_PER_S // 10  # of unchanged frames, to see lamps flicker
+_CLOSE = 0.05  # tolerance of a search
+_JUDGE_NS = 13 * NS_PER_S // 10  # of unchanged frames, for detecting flicker
 _FLICKER_EVERY_NS = 2 * NS_PER_S
 
 
@@ -42,7 +42,7 @@ class LockPhase(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class _Aim:
-    """A control to be searched so that the pictures look as before the lock."""
+    """A control and its target, so that the pictures look as before the lock."""
 
     control: Control
     reading: Callable[[Recent], float]
@@ -66,11 +66,11 @@ def _warmth(recent: Recent) -> float:
 
 
 class CameraLocking:
-    """`tick` moves it on; `phase`, `share` (0..1), `controls`, `flicker` and `trouble` say where it is.
+    """A state machine, advanced by `tick`; `phase`, `share` (0..1), `controls`, `flicker` and `trouble` give its state.
 
-    What cannot be locked (a simulated camera, a file, a network camera) only has to deliver for two
-    seconds. Most cameras tell the exposure that their automatic has found; the picture of those that
-    do not changes when the automatic goes off, and the value is then searched by the brightness.
+    A source without controls (a simulated camera, a file, a network camera) only has to deliver for two seconds. Most
+    cameras report the exposure of their automatic. The picture of others changes when the automatic goes off; then a
+    search finds the value by the brightness.
     """
 
     def __init__(
@@ -88,9 +88,9 @@ class CameraLocking:
         self.trouble: tuple[Problem, ...] = ()
         self._fps_hz, self._locks, self._watch = fps_hz, locks, watch
         self._mains_hz: int | None = None
-        self._since_ns = 0  # when the phase began
-        self._changed_ns = 0  # when the camera was set last
-        self._wanted = (0.0, 0.0)  # brightness and warmth that the automatics had found
+        self._since_ns = 0  # start of the phase
+        self._changed_ns = 0  # last change of a control
+        self._wanted = (0.0, 0.0)  # brightness and warmth under the automatics
         self._share = 0.0
         self._aims: list[_Aim] = []
         self._search: ValueSearch | None = None
@@ -98,24 +98,24 @@ class CameraLocking:
 
     @property
     def share(self) -> float:
-        """How far it is, 0..1."""
+        """Progress, 0..1."""
         return {LockPhase.LOCKED: 1.0, LockPhase.LOCKING: 0.8}.get(self.phase, self._share)
 
     @property
     def exposure_s(self) -> float | None:
-        """How long pictures are exposed [s], None where it is not known."""
+        """Exposure time [s], None where unknown."""
         units = self.controls.exposure
         return units / UNITS_PER_S if units and self.phase is LockPhase.LOCKED else None
 
     def again(self) -> None:
-        """Begin anew."""
+        """Start over."""
         self.phase, self.trouble, self.flicker, self._share = LockPhase.WAITING, (), None, 0.0
         self._mains_hz = None
 
     def tick(self, now_ns: int, live: bool) -> None:
-        """Go on, if the camera delivers (`live`)."""
+        """Advance, if the camera delivers (`live`)."""
         if not live:
-            # what was locked is set again at its opening; what was on the way begins anew
+            # opening restores locked controls; an unfinished lock starts over
             if self.phase in (LockPhase.SETTLING, LockPhase.LOCKING):
                 self.phase, self._share = LockPhase.WAITING, 0.0
             return
@@ -161,7 +161,7 @@ class CameraLocking:
         self._lock(now_ns, Control.EXPOSURE, Control.GAIN)
 
     def _lock(self, now_ns: int, *by_brightness: Control) -> None:
-        """Automatics off; then these controls, as far as needed, bring the brightness back."""
+        """Automatics off; then adjust these controls, as far as needed, to the brightness before."""
         if self.flicker is not None:
             self._mains_hz = self.flicker.mains_hz
             by_brightness = (Control.GAIN,)  # the exposure is of whole pulses, and must stay so
@@ -176,7 +176,7 @@ class CameraLocking:
         self.phase, self._changed_ns = LockPhase.LOCKING, now_ns
 
     def _approach(self, now_ns: int) -> None:
-        """Look at what the last change did, and make the next."""
+        """Evaluate the last change, and make the next."""
         if now_ns - self._changed_ns < _EFFECT_NS + _LOOK_NS:
             return
         recent = self._watch.recent(self.camera)
@@ -184,14 +184,14 @@ class CameraLocking:
         if not len(look.t_ns):
             return
         if self._search is not None:
-            self._search.seen(self._aims[0].reading(look))
+            self._search.report(self._aims[0].reading(look))
             self._try(now_ns)
             return
         while self._aims:
             aim = self._aims[0]
             self._search = None if aim.is_met(look) else self._search_for(aim)
             if self._search is not None:
-                self._search.seen(aim.reading(look))
+                self._search.report(aim.reading(look))
                 self._try(now_ns)
                 return
             self._aims.pop(0)

@@ -1,4 +1,4 @@
-"""The cameras' controls during a setup: locked by its steps, given back when it ends."""
+"""The cameras' controls during a setup: its steps lock them, and the end of the setup restores them."""
 
 import threading
 from collections.abc import Iterable
@@ -17,25 +17,24 @@ from mocapd.errors import UnavailableError
 
 @runtime_checkable
 class MayRefuse(Protocol):
-    """A Lockable source that knows only once it is open whether its camera can be set: one of another machine."""
+    """A Lockable source of another machine, which learns at its opening whether its camera accepts settings."""
 
     @property
     def takes_orders(self) -> bool: ...
 
 
 class CameraLocks:
-    """Which cameras can be locked, and what each held before.
+    """Which cameras can be locked, and the original values of their controls.
 
-    Made by whoever opened the sources, and kept beside the wizard: steps come and go. Its `restore`
-    belongs into the `finally` of the process, so that a SIGTERM gives back too. Methods may be called
-    from any thread; those that touch a camera raise UnavailableError when it is gone, or when
-    `restore` was called.
+    Made by the owner of the sources, with a longer life than steps. The `finally` of the process must call `restore`, so
+    that a SIGTERM restores too. Thread-safe; methods that access a camera raise UnavailableError when it is gone, or
+    after `restore`.
     """
 
     def __init__(self, sources: Iterable[Source]) -> None:
         self._sources = {source.name: source for source in sources if isinstance(source, Lockable)}
         self._asked = {name: source.settings for name, source in self._sources.items()}
-        self._lock = threading.RLock()  # guards what follows, and is held while a camera is set
+        self._lock = threading.RLock()  # guards the following, also during camera access
         self._before: dict[str, Held] = {}
         self._ended = False
 
@@ -48,12 +47,12 @@ class CameraLocks:
         )
 
     def settings(self, camera: str) -> WebcamSettings | None:
-        """What a webcam is asked for at each opening; None for what is none."""
+        """The requested settings of a webcam at each opening; None for other sources."""
         source = self._sources.get(camera)
         return source.settings if source is not None else None
 
     def set_free(self, camera: str) -> None:
-        """Switch its automatics on; what it held is remembered the first time."""
+        """Switch its automatics on; the first call stores the original values."""
         with self._lock:
             device = self._device(camera)
             if camera not in self._before:
@@ -66,12 +65,12 @@ class CameraLocks:
             control_lock.lock(self._device(camera), self._before[camera], fps_hz, mains_hz)
 
     def range(self, camera: str, control: Control) -> ControlRange | None:
-        """What the control takes; None when the camera does not have it."""
+        """The control's range; None when the camera does not have it."""
         with self._lock:
             return self._device(camera).range(control)
 
     def read(self, camera: str, control: Control) -> int | None:
-        """What the control holds; None when the camera does not have it."""
+        """The control's value; None when the camera does not have it."""
         with self._lock:
             return self._device(camera).read(control)
 
@@ -81,7 +80,7 @@ class CameraLocks:
             self._device(camera).write(control, value)
 
     def keep(self, camera: str, mains_hz: int | None) -> Controls:
-        """What it is locked to; from now on set again at each opening, so also after a replug."""
+        """The locked values; every opening restores them from now on, also after a replug."""
         with self._lock:
             source = self._sources[camera]
             controls = control_lock.as_controls(
@@ -91,13 +90,13 @@ class CameraLocks:
             return controls
 
     def change_mode(self, camera: str, size_px: tuple[int, int], fps_hz: float) -> None:
-        """Open it anew with this size and rate."""
+        """Reopen it with this size and rate."""
         with self._lock:
             source = self._sources[camera]
             source.change(replace(source.settings, size_px=size_px, fps_hz=fps_hz))
 
     def take_up(self, camera: str, settings: WebcamSettings) -> None:
-        """Lock it to what an earlier setup has found: now, where it is open, and at each opening."""
+        """Lock it to the result of an earlier setup: now, if open, and at each opening."""
         with self._lock:
             source = self._sources[camera]
             device = None if self._ended else source.device()
@@ -108,7 +107,7 @@ class CameraLocks:
             source.change(settings)
 
     def restore(self) -> None:
-        """Give back what the cameras held before; nothing can be locked any more. May be called twice."""
+        """Restore the original values; no locking afterwards. Idempotent."""
         with self._lock:
             self._ended = True
             for name, before in self._before.items():
@@ -117,7 +116,7 @@ class CameraLocks:
                 source.change(replace(source.settings, controls=asked))
                 device = source.device()
                 if device is None:
-                    continue  # unplugged: it forgets by itself
+                    continue  # unplugged: it loses its controls anyway
                 try:
                     control_lock.restore(device, before)
                 except UnavailableError:

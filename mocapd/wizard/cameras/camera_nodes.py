@@ -1,6 +1,6 @@
-"""The machine's camera nodes beside the cameras in use: which is whose, what is wrong, what would fit.
+"""The machine's camera nodes and the cameras in use: assignment, problems, and modes that would fit.
 
-A node that is in use by the setup is "busy" to whoever asks; that is left out here.
+A node in use by the setup reports "busy"; such reports are left out here.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ from mocapd.wizard.draft import DraftCamera
 
 
 def node_of(camera: DraftCamera, nodes: Sequence[CameraInfo]) -> CameraInfo | None:
-    """The node that a camera is read from; None for what is no webcam, or is not plugged in."""
+    """The node of a camera; None for another kind of source, or an unplugged webcam."""
     for one in nodes:
         if one.captures and camera.source in (one.spec, str(one.node)):
             return one
@@ -24,7 +24,9 @@ def node_of(camera: DraftCamera, nodes: Sequence[CameraInfo]) -> CameraInfo | No
     if wanted is None:
         return None
     moved = [
-        one for one in nodes if one.captures and one.identity and one.identity.model == wanted.model
+        node
+        for node in nodes
+        if node.captures and node.identity and node.identity.model == wanted.model
     ]
     return moved[0] if len(moved) == 1 else None
 
@@ -34,12 +36,12 @@ def unused_nodes(
 ) -> tuple[CameraInfo, ...]:
     """The cameras of the machine that the setup has not opened, with their reasons."""
     used = [node_of(camera, nodes) for camera in cameras]
-    return tuple(one for one in nodes if one.captures and one not in used)
+    return tuple(node for node in nodes if node.captures and node not in used)
 
 
 def mode_of(camera: DraftCamera, node: CameraInfo) -> Mode:
-    """What a camera is asked to send: MJPG where it has it."""
-    mjpg = any(one.fourcc == "MJPG" for one in node.formats)
+    """The requested mode of a camera: MJPG where available."""
+    mjpg = any(fmt.fourcc == "MJPG" for fmt in node.formats)
     return Mode("MJPG" if mjpg else "YUYV", camera.size_px, camera.fps_hz)
 
 
@@ -49,10 +51,9 @@ def offers(
     statuses: Mapping[str, CaptureStatus],
     sysfs: Path = SYSFS,
 ) -> tuple[dict[str, Mode], tuple[Problem, ...]]:
-    """For cameras whose USB bus is too crowded: by id a mode that fits, and what is wrong.
+    """For cameras on a crowded USB bus: by id a mode that fits, and the problem.
 
-    A camera that has run for a while at its rate proves an estimate wrong, so buses on which all do
-    are left out.
+    A camera that has run for a while at its rate disproves an estimate, so buses where all cameras do are left out.
     """
     on_usb = {}
     formats = {}

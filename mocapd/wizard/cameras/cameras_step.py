@@ -1,4 +1,4 @@
-"""The step Cameras: each is there, names its trouble, settles, and is locked.
+"""The step Cameras: checks each camera, lets it settle, and locks it.
 
 Its commands are `cameras_verbs.CAMERAS`.
 
@@ -37,7 +37,7 @@ _LIGHT_EVERY_NS = NS_PER_S // 2
 
 class CamerasStep:
     """Args:
-    cameras: what the host has opened, in the order of the hub;
+    cameras: the host's open cameras, in the order of the hub;
     nodes: lists the machine's cameras (`list_cameras`); () where they are simulated;
     locks: the host's, see CameraLocks.
     """
@@ -72,22 +72,22 @@ class CamerasStep:
         self._context.hub.join(self._watch)
 
     def leave(self) -> None:
-        """See Step. What is locked stays locked: the host gives it back at the end."""
+        """See Step. Controls stay locked: the host restores them at the end."""
         self._context.hub.leave(self._watch)
 
     def tick(self, now_ns: int) -> None:
         """See Step."""
         self._statuses = self._context.statuses()
-        for name in self._taken:
+        for name in self._active_names:
             self._locking[name].tick(now_ns, self._is_live(name))
         due = self._listed_ns is None or now_ns - self._listed_ns > _LIST_EVERY_NS
         if due and self._context.job is None:
             self._listed_ns = now_ns
-            self._context.start_job(self._list, self._listed)
+            self._context.start_job(self._list, self._take_nodes)
         if now_ns - self._lit_ns > _LIGHT_EVERY_NS:
             self._lit_ns = now_ns
             self._look_at_light()
-            taken = tuple(self._cameras[name] for name in self._taken)
+            taken = tuple(self._cameras[name] for name in self._active_names)
             self._offers, self._crowded = offers(taken, self._nodes, self._statuses)
         if self._ready:
             self._write_draft()
@@ -100,7 +100,7 @@ class CamerasStep:
             raise InputError(f"there is no camera {brief(name)}", "the page", "reload the page")
         match command:
             case LeaveOut():
-                if self._taken == [name]:
+                if self._active_names == [name]:
                     raise InputError("one camera must stay", name, "take another in first")
                 self._left_out.add(name)
             case TakeIn():
@@ -118,7 +118,7 @@ class CamerasStep:
 
     def view(self) -> StepView:
         """See Step."""
-        taken = self._taken
+        taken = self._active_names
         problems = [problem for name in taken for problem in self._problems(name)]
         problems += (*self._crowded, *self._list_trouble)
         too_few = too_few_cameras(self._context.draft, len(taken))
@@ -148,8 +148,8 @@ class CamerasStep:
             details={
                 "cameras": [self._row(camera) for camera in self._cameras.values()],
                 "others": [
-                    _node_row(one)
-                    for one in unused_nodes(tuple(self._cameras.values()), self._nodes)
+                    _node_row(node)
+                    for node in unused_nodes(tuple(self._cameras.values()), self._nodes)
                 ],
             },
         )
@@ -157,14 +157,14 @@ class CamerasStep:
     # -- the cameras -----------------------------------------------------------------------------
 
     @property
-    def _taken(self) -> list[str]:
+    def _active_names(self) -> list[str]:
         return [name for name in self._cameras if name not in self._left_out]
 
     @property
     def _ready(self) -> bool:
         return all(
             self._is_live(name) and self._locking[name].phase is LockPhase.LOCKED
-            for name in self._taken
+            for name in self._active_names
         )
 
     def _is_live(self, name: str) -> bool:
@@ -191,7 +191,7 @@ class CamerasStep:
         camera = self._cameras[name]
         node = node_of(camera, self._nodes)
         formats = node.formats if node is not None else ()
-        there = any(one.size_px == size_px and fps_hz in one.rates_hz for one in formats)
+        there = any(fmt.size_px == size_px and fps_hz in fmt.rates_hz for fmt in formats)
         if not there or not self._locks.can_lock(name):
             raise InputError(
                 f"has no mode {size_px[0]}x{size_px[1]} at {fps_hz:g} Hz",
@@ -202,14 +202,14 @@ class CamerasStep:
         self._cameras[name] = replace(camera, size_px=size_px, fps_hz=fps_hz)
         self._locking[name] = self._new_locking(self._cameras[name])
 
-    def _list(self, _tell: Tell) -> tuple[CameraInfo, ...]:
+    def _list(self, _report: Tell) -> tuple[CameraInfo, ...]:
         return self._list_nodes()
 
-    def _listed(self, nodes: tuple[CameraInfo, ...]) -> None:
+    def _take_nodes(self, nodes: tuple[CameraInfo, ...]) -> None:
         self._nodes, self._list_trouble = nodes, ()
 
     def _look_at_light(self) -> None:
-        for name in self._taken:
+        for name in self._active_names:
             frame, locking = self._context.hub.newest(name), self._locking[name]
             if frame is None or locking.phase is not LockPhase.LOCKED or not self._is_live(name):
                 self._light.pop(name, None)
@@ -221,7 +221,7 @@ class CamerasStep:
     def _write_draft(self) -> None:
         cameras = tuple(
             replace(self._cameras[name], controls=self._locking[name].controls)
-            for name in self._taken
+            for name in self._active_names
         )
         self._context.draft = with_cameras(self._context.draft, cameras)
 
@@ -252,7 +252,7 @@ class CamerasStep:
         return (*self._locking[name].trouble, *self._light.get(name, ()), *slow)
 
     def _done_sentence(self, has_problems: bool) -> str:
-        count = len(self._taken)
+        count = len(self._active_names)
         if count == 1:
             return (
                 "One camera is ready: it tracks, but how far away a hand is stays a guess. Go on, or "
@@ -281,7 +281,7 @@ class CamerasStep:
             "share": round(locking.share, 2),
             "lockable": self._locks.can_lock(name),
             "controls": held if locking.phase is LockPhase.LOCKED else {},
-            "problems": [asdict(one) for one in self._problems(name)]
+            "problems": [asdict(problem) for problem in self._problems(name)]
             if name not in self._left_out
             else [],
             "offer": {"size_px": list(offer.size_px), "fps_hz": offer.fps_hz} if offer else None,

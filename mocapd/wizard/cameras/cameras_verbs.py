@@ -1,4 +1,4 @@
-"""What a person can say in the step Cameras: each verb with its arguments and their ranges."""
+"""Commands of the step Cameras, with their arguments and ranges."""
 
 from typing import Annotated
 
@@ -11,15 +11,15 @@ Pixels = Annotated[int, msgspec.Meta(ge=16, le=100_000)]
 
 
 class LeaveOut(OfCamera, frozen=True):
-    """It takes no part."""
+    """Exclude a camera."""
 
 
 class TakeIn(OfCamera, frozen=True):
-    """It takes part after all."""
+    """Include a camera again."""
 
 
 class Name(OfCamera, frozen=True):
-    """What the person calls it; empty: its id."""
+    """The user's name for it; empty: its id."""
 
     refused = "this name does not do"
     fix = f"take up to {LONGEST_NAME} printable characters"
@@ -34,11 +34,11 @@ class ChangeMode(OfCamera, frozen=True):
 
 
 class Lock(OfCamera, frozen=True):
-    """Let it settle and lock it anew."""
+    """Let it settle and lock it again."""
 
 
 class SamePort(OfCamera, frozen=True):
-    """Whether the webcam that is in another port now is the one that was calibrated."""
+    """Whether the webcam in another port now is the calibrated one."""
 
     same: bool
 

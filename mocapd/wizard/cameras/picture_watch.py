@@ -1,4 +1,4 @@
-"""What is needed of every frame to judge light and locks: the mean colour, and the brightness of the rows."""
+"""Statistics of every frame for judging light and locks: the mean colour, and the brightness of the rows."""
 
 import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
@@ -41,7 +41,7 @@ class Recent:
         return float((red + 1.0) / (blue + 1.0))
 
     def since(self, t_ns: int) -> "Recent":
-        """Those taken after that instant."""
+        """The frames after that instant."""
         later = self.t_ns > t_ns
         return Recent(self.t_ns[later], self.rows[later], self.bgr[later])
 
@@ -56,11 +56,11 @@ def row_means(pixels: Bytes) -> tuple[Floats, Floats]:
 
 
 class PictureWatch:
-    """Joins a FrameHub; `put` runs in the capture threads, the rest anywhere."""
+    """A FrameHub subscriber; `put` runs in the capture threads, the rest anywhere."""
 
     def __init__(self, cameras: Iterable[str]) -> None:
         self._lock = threading.Lock()  # guards what follows
-        self._seen: dict[str, deque[tuple[int, Floats, Floats]]] = {
+        self._frames: dict[str, deque[tuple[int, Floats, Floats]]] = {
             name: deque(maxlen=_KEPT) for name in cameras
         }
 
@@ -68,18 +68,18 @@ class PictureWatch:
         """Note a frame."""
         rows, bgr = row_means(frame.pixels)
         with self._lock:
-            seen = self._seen.get(frame.camera)
-            if seen is None:
+            own = self._frames.get(frame.camera)
+            if own is None:
                 return
-            if seen and seen[-1][1].shape != rows.shape:
-                seen.clear()  # it was opened anew with another size
-            seen.append((frame.t_ns, rows, bgr))
+            if own and own[-1][1].shape != rows.shape:
+                own.clear()  # reopened with another size
+            own.append((frame.t_ns, rows, bgr))
 
     def recent(self, camera: str) -> Recent:
-        """The frames that are kept, the last three seconds or so."""
+        """The stored frames, of about the last three seconds."""
         with self._lock:
-            seen = list(self._seen[camera])
-        if not seen:
+            own = list(self._frames[camera])
+        if not own:
             return Recent(np.zeros(0, np.int64), np.zeros((0, 1)), np.zeros((0, 3)))
-        times, rows, colours = zip(*seen, strict=True)
+        times, rows, colours = zip(*own, strict=True)
         return Recent(np.array(times, np.int64), np.array(rows), np.array(colours))

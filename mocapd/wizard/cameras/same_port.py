@@ -1,4 +1,4 @@
-"""A webcam in another USB port than when it was calibrated: asked about once, in the step Cameras.
+"""A question in the step Cameras about a webcam in another USB port than when it was calibrated; asked once.
 
 Its command is `cameras_verbs.PORTS`. Details: moved: [{camera, was, now}] not yet answered.
 """
@@ -21,7 +21,7 @@ from mocapd.wizard.wizard import MakeStep
 
 @dataclass(frozen=True, slots=True)
 class PortChange:
-    """A calibrated webcam that is found in another port: what it was called, and is now."""
+    """A calibrated webcam in another port: its old and new address."""
 
     camera: str
     was: str
@@ -31,33 +31,33 @@ class PortChange:
 def find_port_changes(
     saved: Sequence[DraftCamera], present: Sequence[WebcamIdentity]
 ) -> tuple[PortChange, ...]:
-    """Which of the saved webcams sit in another port than they did; the others are left out."""
+    """The saved webcams that are in another port now."""
     identities = identities_of((camera.id, camera.source) for camera in saved)
     moved = []
     for name, wanted in identities.items():
-        others = [one for other, one in identities.items() if other != name]
+        others = [identity for other, identity in identities.items() if other != name]
         try:
-            found = match_identity(wanted, present, others)
-        except UnavailableError:  # it is not there at all, or twins could be meant
+            match = match_identity(wanted, present, others)
+        except UnavailableError:  # unplugged, or several identical candidates
             continue
-        if found.moved:
-            moved.append(PortChange(name, str(wanted), str(found.identity)))
+        if match.moved:
+            moved.append(PortChange(name, str(wanted), str(match.identity)))
     return tuple(moved)
 
 
 def same_camera(draft: Draft, moved: PortChange) -> Draft:
-    """The draft with the camera in its new port."""
+    """The draft with the camera at its new port."""
     return replace(
         draft,
         cameras=tuple(
-            replace(one, source=moved.now) if one.id == moved.camera else one
-            for one in draft.cameras
+            replace(camera, source=moved.now) if camera.id == moved.camera else camera
+            for camera in draft.cameras
         ),
     )
 
 
 def other_camera(draft: Draft, moved: PortChange) -> Draft:
-    """The draft without what is known of the camera that was meant before, and of the room it stood in."""
+    """The draft without the data of the previous camera, and of its room."""
     draft = same_camera(draft, moved)
     return replace(
         draft,
@@ -75,9 +75,9 @@ def _without(values: Mapping[str, T], name: str) -> dict[str, T]:
 
 
 class AsksForPorts:
-    """The step Cameras with the question before it; see the module's docstring, and Step.
+    """Wraps the step Cameras with the question; see the module's docstring, and Step.
 
-    moved: shared by all visits of the step, so that what was answered is not asked again.
+    moved: shared by all visits of the step, so that no question is repeated.
     """
 
     def __init__(self, context: Context, make: MakeStep, moved: list[PortChange]) -> None:
@@ -112,7 +112,7 @@ class AsksForPorts:
         if not isinstance(command, SamePort):
             self._step.command(command)
             return
-        asked = [one for one in self._moved if one.camera == command.camera]
+        asked = [change for change in self._moved if change.camera == command.camera]
         if not asked:
             raise InputError("nothing is asked of this camera", "the page", "reload the page")
         if command.same:
@@ -126,22 +126,22 @@ class AsksForPorts:
         view = self._step.view()
         questions = tuple(
             Problem(
-                f"a camera like it was in USB port {_port(one.was)}, and is now in {_port(one.now)}",
-                one.camera,
+                f"a camera like it was in USB port {_port(change.was)}, and is now in {_port(change.now)}",
+                change.camera,
                 "say below whether it is the same camera",
             )
-            for one in self._moved
+            for change in self._moved
         )
-        details = {**view.details, "moved": [asdict(one) for one in self._moved]}
+        details = {**view.details, "moved": [asdict(change) for change in self._moved]}
         view = replace(view, problems=questions + self._trouble + view.problems, details=details)
         if not self._moved or view.state is not StepState.DONE:
             return view
-        names = " and ".join(one.camera for one in self._moved)
+        names = " and ".join(change.camera for change in self._moved)
         sentence = f"Say below whether {names} is the camera that was calibrated before."
         return replace(view, state=StepState.WAITING, sentence=sentence)
 
     def _remember(self, moved: PortChange) -> None:
-        """In the draft and in the saved calibration; a full disk is told, and asked about next time."""
+        """Store in the draft and in the saved calibration; a failed write is shown, and asked about again."""
         self._context.draft = same_camera(self._context.draft, moved)
         try:
             rewrite_sources(calibration_path(self._context.state_dir), {moved.camera: moved.now})

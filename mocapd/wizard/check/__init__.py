@@ -1,1 +1,1 @@
-"""The step Check: tracking on what was found, judged, and saved."""
+"""The step Check: tracks with the draft, judges and saves it."""

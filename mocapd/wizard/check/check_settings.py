@@ -1,4 +1,4 @@
-"""What the step Check needs to know of the daemon."""
+"""The daemon's settings that the step Check needs."""
 
 from dataclasses import dataclass, field
 
@@ -8,8 +8,8 @@ from mocapd.pipeline.bundler import BundlerParams
 
 @dataclass(frozen=True, slots=True)
 class CheckSettings:
-    """How the daemon will track: its section `tracker`, the preset of `smoothing`, and how frames wait for
-    each other. next_command: what starts it on what is saved; empty where it runs, and takes that up by itself."""
+    """The daemon's section `tracker`, its preset of `smoothing`, and its bundler settings. next_command: the
+    command that starts it with the saved calibration; empty in a daemon, which loads that by itself."""
 
     tracker: TrackerSection
     smoothing: str = "balanced"

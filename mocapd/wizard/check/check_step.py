@@ -1,4 +1,4 @@
-"""Check: the tracker runs on what was found, five seconds of moving are judged, and it is saved.
+"""The step Check: tracks with the draft, judges five seconds of movement, and saves the calibration.
 
 Its commands are `check_verbs.CHECK`.
 Details: phase (`missing`, `preparing`, `seeking`, `moving`, `judged`), tracking (`live`, `coasting`,
@@ -40,11 +40,11 @@ from mocapd.wizard.step import Scene, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 MOVING_S = 5.0
-# Without a shirt: time to leave the pictures, and, for the room to be learned, time and frame sets: a slow machine tracks few
+# Without a shirt: time to leave the pictures; time and frame sets for learning the background, as a slow machine tracks few
 LEAVE_S, LEARN_S, LEARN_SETS = 5.0, 2.0, 30
-SEEK_S = 12.0  # without anybody found, after which the reasons are told
-LEAST_MEASURES = 8  # of which a verdict is made
-LONGEST_S = 25.0  # of moving, on a machine that is busy
+SEEK_S = 12.0  # without a person, before the reasons are shown
+LEAST_MEASURES = 8  # of a verdict
+LONGEST_S = 25.0  # of moving, on a busy machine
 _NOBODY = Problem(
     "nobody in the shirt is found",
     "all cameras",
@@ -58,20 +58,20 @@ _NOBODY_PLAIN = Problem(
 
 
 class Phase(StrEnum):
-    """What the step is at."""
+    """The phase of the step."""
 
     MISSING = "missing"
     PREPARING = "preparing"
     LEAVING = "leaving"  # without a shirt: the wearer leaves the pictures
-    EMPTY = "empty"  # and the room is learned
+    EMPTY = "empty"  # the background is learned
     SEEKING = "seeking"
     MOVING = "moving"
     JUDGED = "judged"
 
 
 class CheckStep:
-    """See the module's docstring, and Step. `shown` gets the body that is tracked, to be drawn over each
-    picture by whoever serves it: at a tick the newest body is not the newest picture's."""
+    """See the module's docstring, and Step. `shown` gets the tracked body, for its owner to draw over each picture: at a
+    tick the newest body is not the newest picture's."""
 
     name = StepName.CHECK
     verbs = CHECK
@@ -87,13 +87,13 @@ class CheckStep:
         self._context, self._settings, self._load = context, settings, load
         self._shown, self._died = shown, died
         self._tracking: CheckTracking | None = None
-        self._prepared: CheckTracker | None = None  # until the room is empty
+        self._prepared: CheckTracker | None = None  # during the wait for an empty room
         self._phase = Phase.PREPARING
         self._problems: tuple[Problem, ...] = ()
-        self._seen: list[Measure] = []
+        self._measures: list[Measure] = []
         self._began_ns: int | None = None  # seeking, or moving
         self._now_ns = 0
-        self._counts: Mapping[str, CameraCounts] = {}  # when moving began
+        self._counts: Mapping[str, CameraCounts] = {}  # at the start of moving
         self._verdicts: tuple[CameraVerdict, ...] = ()
         self._saved = ""
 
@@ -105,8 +105,10 @@ class CheckStep:
         if self._problems:
             self._phase = Phase.MISSING
             return
-        known, cache_dir = calibration_of(draft), self._context.cache_dir
-        self._context.start_job(partial(self._load, known, self._settings, cache_dir), self._run)
+        calibration, cache_dir = calibration_of(draft), self._context.cache_dir
+        self._context.start_job(
+            partial(self._load, calibration, self._settings, cache_dir), self._run
+        )
 
     def tick(self, now_ns: int) -> None:
         """See Step."""
@@ -124,15 +126,15 @@ class CheckStep:
             if self._tracking.metrics().tracking is Tracking.LIVE:
                 self._move(now_ns)
             elif elapsed_ns > SEEK_S * NS_PER_S:
-                self._problems = self._slowness() or (self._nobody,)
+                self._problems = self._slowness() or (self._no_person,)
         elif self._phase is Phase.MOVING:
-            self._seen += fresh
-            enough = len(self._seen) >= LEAST_MEASURES
+            self._measures += fresh
+            enough = len(self._measures) >= LEAST_MEASURES
             if elapsed_ns >= MOVING_S * NS_PER_S and enough:
                 self._judge()
             elif elapsed_ns > LONGEST_S * NS_PER_S:
                 self._seek()
-                self._problems = self._slowness() or (self._nobody,)
+                self._problems = self._slowness() or (self._no_person,)
 
     def command(self, command: Command) -> None:
         """See Step."""
@@ -150,8 +152,10 @@ class CheckStep:
 
     def view(self) -> StepView:
         """See Step."""
-        state, sentence, progress = self._told()
-        of_cameras = tuple(one.problem for one in self._verdicts if one.problem is not None)
+        state, sentence, progress = self._status()
+        of_cameras = tuple(
+            verdict.problem for verdict in self._verdicts if verdict.problem is not None
+        )
         metrics = self._tracking.metrics() if self._tracking is not None else None
         return StepView(
             state,
@@ -162,7 +166,7 @@ class CheckStep:
                 "phase": self._phase.value,
                 "tracking": None if metrics is None else metrics.tracking.value,
                 "rate_hz": None if metrics is None else round(metrics.rate_hz, 1),
-                "verdicts": [verdict_json(one) for one in self._verdicts],
+                "verdicts": [verdict_json(verdict) for verdict in self._verdicts],
                 "saved": self._saved or None,
                 "next_command": self._settings.next_command,
                 "has_shirt": self._context.draft.has_shirt,
@@ -189,7 +193,7 @@ class CheckStep:
         )
 
     def _empty_room(self, now_ns: int) -> None:
-        """What any clothes stand before is learned while nobody is there."""
+        """Learns the background for clothes while the room is empty."""
         if self._began_ns is None:
             self._began_ns = now_ns
         elapsed_s = seconds(now_ns - self._began_ns)
@@ -210,7 +214,7 @@ class CheckStep:
         self._problems, self._verdicts = (), ()
 
     @property
-    def _nobody(self) -> Problem:
+    def _no_person(self) -> Problem:
         reason = None if self._tracking is None else self._tracking.metrics().lost_reason
         if reason is not None:
             return Problem(reason.what, "all cameras", reason.fix)
@@ -219,7 +223,7 @@ class CheckStep:
     def _move(self, now_ns: int) -> None:
         assert self._tracking is not None
         self._phase, self._began_ns = Phase.MOVING, now_ns
-        self._problems, self._seen = (), []
+        self._problems, self._measures = (), []
         self._counts = self._tracking.counts()
 
     def _judge(self) -> None:
@@ -230,7 +234,7 @@ class CheckStep:
         self._verdicts = tuple(
             camera_verdict(
                 camera.name,
-                self._seen,
+                self._measures,
                 _delivery(
                     self._counts[camera.name],
                     counts[camera.name],
@@ -245,12 +249,12 @@ class CheckStep:
         )
         stature_m = draft.stature_m or self._settings.tracker.stature_m
         hips_m = float(standard_skeleton(stature_m).rest_m[INDEX["hips"], 1])
-        of_room = room_problems(self._seen, hips_m, draft.floor_known)
+        of_room = room_problems(self._measures, hips_m, draft.floor_known)
         self._problems = (*self._slowness(), *of_room)
         self._phase = Phase.JUDGED
 
     def _slowness(self) -> tuple[Problem, ...]:
-        """Whether the machine keeps up."""
+        """A problem if the machine is too slow."""
         slowness = self._tracking.metrics().slowness if self._tracking is not None else None
         return () if slowness is None else (Problem(slowness.what, "this machine", slowness.fix),)
 
@@ -265,11 +269,11 @@ class CheckStep:
             store_intrinsics(draft, state_dir, datetime.now(UTC))
         except MocapdError as error:
             raise InputError(error.what, error.where, error.fix) from error
-        # the lenses are kept now: a second save does not keep them anew
+        # the lenses are stored now: a second save does not store them again
         self._context.draft = replace(draft, intrinsics_saved=frozenset(draft.intrinsics))
-        self._context.saved()
+        self._context.on_saved()
 
-    def _told(self) -> tuple[StepState, str, float]:
+    def _status(self) -> tuple[StepState, str, float]:
         """State, sentence and progress."""
         if self._phase is Phase.MISSING:
             return StepState.FAILED, "This cannot be checked yet: see below.", 0.0
@@ -287,26 +291,26 @@ class CheckStep:
             return StepState.WAITING, "Come back, stand upright, and face the cameras.", 0.0
         if self._phase is Phase.MOVING:
             sentence = "Walk about and move your arms until the bar is full."
-            share = min(elapsed_s / MOVING_S, len(self._seen) / LEAST_MEASURES, 1.0)
+            share = min(elapsed_s / MOVING_S, len(self._measures) / LEAST_MEASURES, 1.0)
             return StepState.WAITING, sentence, share
         if self._saved:
             return StepState.DONE, "Saved. You may close this page.", 1.0
-        if self._problems or any(one.problem for one in self._verdicts):
+        if self._problems or any(verdict.problem for verdict in self._verdicts):
             return StepState.DONE, "See below what is doubtful; mend it, or save it as it is.", 1.0
         return StepState.DONE, "All is well: save it.", 1.0
 
 
 def missing(draft: Draft) -> tuple[Problem, ...]:
-    """What has to be found before the tracker can run."""
+    """The missing inputs of the tracker."""
     problems = []
     if draft.rig is None:
         problems.append(
-            Problem("where the cameras stand is not known", "room", "do the step Room first")
+            Problem("where the cameras stand is not calibration", "room", "do the step Room first")
         )
     elif draft.has_shirt and not draft.colours:
         problems.append(
             Problem(
-                "the shirt's colours in this light are not known",
+                "the shirt's colours in this light are not calibration",
                 "colour",
                 "do the step Colour first",
             )
@@ -321,7 +325,7 @@ def missing(draft: Draft) -> tuple[Problem, ...]:
         )
     if draft.stature_m is None:
         problems.append(
-            Problem("the wearer's stature is not known", "body", "type it in the step Body")
+            Problem("the wearer's stature is not calibration", "body", "type it in the step Body")
         )
     return tuple(problems)
 
@@ -334,7 +338,7 @@ def _delivery(
     width_px: int,
     slowness: Slowness | None,
 ) -> Delivery:
-    """What became of a camera's frames between two counts."""
+    """A camera's frames between two counts."""
     return Delivery(
         now.received - before.received,
         now.lost - before.lost,

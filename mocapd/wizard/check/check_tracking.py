@@ -1,4 +1,4 @@
-"""The tracker of the step Check: as the daemon will have it, on the setup's own pictures."""
+"""The tracker of the step Check: the daemon's future tracker, on the setup's own pictures."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -24,12 +24,12 @@ from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.only_cameras import OnlyCameras
 from mocapd.wizard.step import Tell
 
-_BUILDING = 0.8  # share of the preparation that is not the rehearsal
+_BUILDING = 0.8  # share of the preparation before the rehearsal
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CheckTracker:
-    """A tracker that is warm, its cameras, and where it leaves what it measures."""
+    """A warm tracker, its cameras, and the buffer of its measures."""
 
     tracker: Tracker
     shape: BodyShape
@@ -41,38 +41,38 @@ LoadTracker = Callable[[Calibration, CheckSettings, Path, Tell], CheckTracker]
 
 
 def prepare(
-    known: Calibration, settings: CheckSettings, cache_dir: Path, tell: Tell
+    calibration: Calibration, settings: CheckSettings, cache_dir: Path, report: Tell
 ) -> CheckTracker:
     """Build it and warm its kernels; takes seconds. Raises ConfigError or CannotCreateError."""
     section = settings.tracker
-    known = known.assuming(section.stature_m)
-    rig = known.rig
+    calibration = calibration.assuming(section.stature_m)
+    rig = calibration.rig
     assert rig is not None
 
     def progress(what: str, done: int, total: int) -> None:
-        tell(what, _BUILDING * done / max(total, 1))
+        report(what, _BUILDING * done / max(total, 1))
 
     progress("loading the pose database", 0, 1)
     measures = TrackingMeasures()
-    name = measuring_tracker(section.name, known.wearer.has_shirt)
-    shape = known_shape(known)
+    name = measuring_tracker(section.name, calibration.wearer.has_shirt)
+    shape = known_shape(calibration)
     ready = ready_tracker(
         name,
-        known,
+        calibration,
         cached(cache_dir, progress, section.tracking),
-        rehearsal=lambda done, total: tell(
+        rehearsal=lambda done, total: report(
             "preparing the tracker", _BUILDING + (1.0 - _BUILDING) * done / total
         ),
         watched=lambda one: MeasuringTracker(
             one, rig, shape, measures.add, by_outline=not entry(name).reads_shirt
         ),
     )
-    measures.taken()
+    measures.take()
     return CheckTracker(ready.tracker, ready.shape, rig, measures)
 
 
 class CheckTracking:
-    """Runs from its making to `stop`; used by the wizard's thread."""
+    """Runs from its creation to `stop`; used by the wizard's thread."""
 
     def __init__(
         self,
@@ -95,19 +95,19 @@ class CheckTracking:
         hub.join(self._entry)
 
     def measures(self) -> tuple[Measure, ...]:
-        """What was measured since the last time."""
-        return self._prepared.measures.taken()
+        """New measures since the last call."""
+        return self._prepared.measures.take()
 
     def metrics(self) -> Metrics:
-        """How it does."""
+        """The pipeline's metrics."""
         return self._loop.metrics()
 
     def counts(self) -> Mapping[str, CameraCounts]:
-        """What became of each camera's frames since the start."""
+        """Counts of each camera's frames since the start."""
         return self._collector.counts().cameras
 
     def stop(self) -> None:
-        """End; nothing is shown any more."""
+        """Stop the pipeline and clear the shown body."""
         self._hub.leave(self._entry)
         self._loop.stop()
         self._shown.forget()

@@ -1,4 +1,4 @@
-"""What a person can say in the step Check: each verb with its arguments and their ranges."""
+"""Commands of the step Check, with their arguments and ranges."""
 
 from mocapd.wizard.commands import Command, Verbs
 

@@ -1,4 +1,4 @@
-"""What a tracker that is looked over the shoulder measured, from the pipeline's thread to the wizard's."""
+"""Queue of a tracker's measures from the pipeline's thread to the wizard's."""
 
 import threading
 from dataclasses import dataclass, field
@@ -13,12 +13,12 @@ class TrackingMeasures:
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _all: list[Measure] = field(default_factory=list)
 
-    def add(self, one: Measure) -> None:
+    def add(self, measure: Measure) -> None:
         with self._lock:
-            self._all.append(one)
+            self._all.append(measure)
 
-    def taken(self) -> tuple[Measure, ...]:
-        """Those since the last time."""
+    def take(self) -> tuple[Measure, ...]:
+        """New measures since the last call."""
         with self._lock:
             out, self._all = tuple(self._all), []
             return out

@@ -1,1 +1,1 @@
-"""The step Colour: pictures frozen, strokes proposed and mended, the light solved."""
+"""The step Colour: freezes pictures, proposes strokes for correction, solves the light."""

@@ -1,4 +1,4 @@
-"""One camera's picture with its strokes, as the page has it: drawn on, and shown with what was solved from it."""
+"""One camera's picture with its strokes on the page: for drawing, and with the solution's preview."""
 
 from dataclasses import dataclass, replace
 
@@ -8,12 +8,12 @@ from mocapd.wizard.colour.colour_solving import CameraSolution, StrokeDrawing
 from mocapd.wizard.colour.stroke_images import encode_picture, encode_strokes
 from mocapd.wizard.step import Json, Shape
 
-SERVICE = "mocapd"  # who drew proposed strokes
+SERVICE = "mocapd"  # author of proposed strokes
 
 
 @dataclass(slots=True, eq=False)
 class Canvas:
-    """One camera's picture as the page has it; `serial` grows with every change of the strokes."""
+    """One camera's picture on the page; `serial` grows with every change of the strokes."""
 
     drawn: StrokeDrawing
     jpeg: bytes
@@ -22,7 +22,7 @@ class Canvas:
     serial: int = 0
 
     def draw(self, strokes: Bytes, shirt: Bytes | None, by: str) -> None:
-        """These are the strokes now."""
+        """Replace the strokes."""
         self.drawn = StrokeDrawing(replace(self.drawn.picture, labels=strokes), shirt)
         self.png, self.by, self.serial = encode_strokes(strokes), by, self.serial + 1
 
@@ -35,30 +35,33 @@ class Canvas:
     def details(
         self, base: str, solved: CameraSolution | None, solutions: int, pictures: dict[str, bytes]
     ) -> Json:
-        """What the page is told of it; puts the camera's pictures, called `base`..., where it finds them.
+        """The page's data; adds the camera's pictures, with keys `base`..., to `pictures`.
 
-        solutions: how many there were so far.
+        solutions: the number of solutions so far.
         """
         picture, strokes = f"{base}.jpg", f"{base}-strokes-{self.serial}.png"
         pictures[picture], pictures[strokes] = self.jpeg, self.png
-        seen = None
-        if solved is not None and solved.seen is not None:
+        preview = None
+        if solved is not None and solved.preview is not None:
             # the bytes also change with the other cameras' strokes: the wearer's colours are common
-            seen = f"{base}-seen-{solutions}.png"
-            pictures[seen] = solved.seen
+            preview = f"{base}-seen-{solutions}.png"
+            pictures[preview] = solved.preview
         return {
             "size": list(self.size_px),
             "picture": picture,
             "strokes": strokes,
             "by": self.by,
-            "seen": seen,
+            "seen": preview,
             "ok": solved is not None and solved.W is not None,
             "marks": []
             if solved is None
-            else [list(p) for one in solved.problems for p in one.at_px],
+            else [list(p) for problem in solved.problems for p in problem.at_px],
             "alike": []
             if solved is None
-            else [{"name": one.name, "at": one.polygon_px.tolist()} for one in solved.alike],
+            else [
+                {"name": lookalike.name, "at": lookalike.polygon_px.tolist()}
+                for lookalike in solved.alike
+            ],
             "note": "" if solved is None else solved.note,
         }
 
@@ -71,15 +74,15 @@ def canvas_of(picture: LabelledPicture) -> Canvas:
 
 
 def problems_of(solved: CameraSolution, camera: str) -> list[Problem]:
-    """What is wrong with the strokes of a camera."""
-    return [Problem(one.what, camera, one.fix) for one in solved.problems]
+    """Problems of a camera's strokes."""
+    return [Problem(problem.what, camera, problem.fix) for problem in solved.problems]
 
 
 def outlines(solved: CameraSolution) -> tuple[Shape, ...]:
-    """What has the shirt's colours beside the wearer, outlined and named."""
+    """Outlines and names of things outside the wearer with the shirt's colours."""
     shapes: list[Shape] = []
-    for one in solved.alike:
-        corners = tuple((float(x), float(y)) for x, y in one.polygon_px)
+    for lookalike in solved.alike:
+        corners = tuple((float(x), float(y)) for x, y in lookalike.polygon_px)
         shapes.append(Shape("polygon", corners, "hint"))
-        shapes.append(Shape("text", corners[:1], "hint", one.name))
+        shapes.append(Shape("text", corners[:1], "hint", lookalike.name))
     return tuple(shapes)

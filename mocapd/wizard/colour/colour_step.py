@@ -1,7 +1,7 @@
-"""The step Colour: a picture of each camera is frozen, strokes are proposed and corrected, the light is solved.
+"""The step Colour: freezes a picture of each camera, proposes strokes for correction, and solves the light.
 
-Its commands are `colour_verbs.COLOUR`. The wearer's own colours are used from the start, as soon as every
-colour has strokes: no two printers and dyes agree.
+Its commands are `colour_verbs.COLOUR`. Uses the wearer's own colours as soon as every colour has strokes: no two
+printers and dyes agree.
 """
 
 import math
@@ -42,7 +42,9 @@ class ColourStep:
 
     def __init__(self, context: Context, load: LoadDatabase = pose_database) -> None:
         self._context, self._load = context, load
-        self._id = secrets.token_hex(4)  # keys of pictures differ from those of an earlier visit
+        self._id = secrets.token_hex(
+            4
+        )  # distinguishes keys of pictures from those of an earlier visit
         self._take = 0  # of pictures
         self._countdown: Countdown | None = None
         self._now_ns = 0
@@ -57,20 +59,22 @@ class ColourStep:
     # -- Step ------------------------------------------------------------------------------------
 
     def enter(self) -> None:
-        """What was found before is shown again."""
+        """Show earlier results again."""
         draft = self._context.draft
         self._context.scene(Scene.T_POSE)
         if draft.colours:
             self._personal = draft.personal
-            self._canvases = {name: canvas_of(one.picture) for name, one in draft.colours.items()}
+            self._canvases = {
+                name: canvas_of(colours.picture) for name, colours in draft.colours.items()
+            }
             self._to_solve = True
 
     def tick(self, now_ns: int) -> None:
-        """Count down, take the pictures, start the job that waits."""
+        """Count down, take the pictures, start the pending job."""
         self._now_ns = now_ns
         if self._countdown is not None:
             cameras = [camera.id for camera in self._context.draft.cameras]
-            frozen = self._countdown.taken(
+            frozen = self._countdown.take(
                 self._context.hub, cameras or self._context.hub.names, now_ns
             )
             if frozen is not None:
@@ -108,16 +112,16 @@ class ColourStep:
         self._troubles = (Problem.of(error),)
 
     def leave(self) -> None:
-        """Nothing stays but the draft."""
+        """Only the draft stays."""
 
     # -- work ------------------------------------------------------------------------------------
 
     def _begin(self, frozen: StillPictures) -> None:
-        """New pictures: old strokes are of no use, and the light may be another."""
+        """Start with new pictures: old strokes are useless, and the light may differ."""
         self._take += 1
         self._canvases = {
-            name: canvas_of(LabelledPicture(one.pixels, one.pixels[..., 0] * 0))
-            for name, one in frozen.frames.items()
+            name: canvas_of(LabelledPicture(frame.pixels, frame.pixels[..., 0] * 0))
+            for name, frame in frozen.frames.items()
         }
         self._solution = Solution({}, False, ())
         self._troubles = tuple(
@@ -130,35 +134,35 @@ class ColourStep:
     def _start_proposing(self) -> None:
         self._to_propose, self._proposing = False, True
         context, take = self._context, self._take
-        serials = {name: one.serial for name, one in self._canvases.items()}
-        pictures = {name: one.drawn.picture.pixels for name, one in self._canvases.items()}
+        serials = {name: canvas.serial for name, canvas in self._canvases.items()}
+        pictures = {name: canvas.drawn.picture.pixels for name, canvas in self._canvases.items()}
         draft, cache_dir, load = context.draft, context.cache_dir, self._load
 
-        def job(tell: Tell) -> dict[str, Proposal | InputError]:
-            return propose(pictures, draft, cache_dir, tell, load)
+        def job(report: Tell) -> dict[str, Proposal | InputError]:
+            return propose(pictures, draft, cache_dir, report, load)
 
-        def done(found: Mapping[str, Proposal | InputError]) -> None:
+        def done(proposals: Mapping[str, Proposal | InputError]) -> None:
             self._proposing = False
             if take == self._take:
-                self._proposed(found, serials)
+                self._take_proposals(proposals, serials)
 
         context.start_job(job, done)
 
-    def _proposed(
-        self, found: Mapping[str, Proposal | InputError], serials: Mapping[str, int]
+    def _take_proposals(
+        self, proposals: Mapping[str, Proposal | InputError], serials: Mapping[str, int]
     ) -> None:
-        """`serials`: of the strokes when it began; what was drawn by hand since then stays."""
-        for name, one in found.items():
+        """`serials`: of the strokes at the start; strokes that the user has drawn since then stay."""
+        for name, one in proposals.items():
             canvas = self._canvases[name]
             if isinstance(one, Proposal) and canvas.serial == serials[name]:
                 canvas.draw(one.strokes, one.shirt, SERVICE)
-        failed = [one for one in found.values() if isinstance(one, InputError)]
+        failed = [proposal for proposal in proposals.values() if isinstance(proposal, InputError)]
         self._troubles = tuple({str(error): Problem.of(error) for error in failed}.values())
         self._to_solve = True
 
     def _start_solving(self) -> None:
         self._to_solve = False
-        drawn = {name: one.drawn for name, one in self._canvases.items()}
+        drawn = {name: canvas.drawn for name, canvas in self._canvases.items()}
         personal, before, take = self._personal, self._solution.cameras, self._take
 
         def done(solution: Solution) -> None:
@@ -166,15 +170,15 @@ class ColourStep:
                 self._solution, self._solutions = solution, self._solutions + 1
                 self._keep()
 
-        self._context.start_job(lambda tell: _solve(drawn, personal, before, tell), done)
+        self._context.start_job(lambda report: _solve(drawn, personal, before, report), done)
 
     def _keep(self) -> None:
-        """What is good goes to the draft."""
+        """Copy good solutions to the draft."""
         context = self._context
         colours = {
-            name: DraftColours(one.drawn.picture, one.W)
-            for name, one in self._solution.cameras.items()
-            if one.W is not None
+            name: DraftColours(camera.drawn.picture, camera.W)
+            for name, camera in self._solution.cameras.items()
+            if camera.W is not None
         }
         context.draft = replace(context.draft, colours=colours, personal=self._solution.personal)
 
@@ -187,7 +191,7 @@ class ColourStep:
 
     def view(self) -> StepView:
         """See Step."""
-        state, sentence, progress = self._told()
+        state, sentence, progress = self._status()
         pictures: dict[str, bytes] = {}
         cameras: dict[str, Json] = {}
         problems = list(self._troubles)
@@ -222,16 +226,16 @@ class ColourStep:
     def _left_s(self) -> int:
         return math.ceil(self._countdown.left_s(self._now_ns)) if self._countdown else 0
 
-    def _told(self) -> tuple[StepState, str, float]:
+    def _status(self) -> tuple[StepState, str, float]:
         """State, sentence and progress."""
         many = len(self._context.hub.names) > 1
         if self._countdown is not None:
             return StepState.WAITING, f"Hold still, arms out: {self._left_s()}", 0.0
         if not self._canvases:
-            who = "all cameras see" if many else "the camera sees"
+            viewers = "all cameras see" if many else "the camera sees"
             return (
                 StepState.FAILED if self._troubles else StepState.WAITING,
-                f"Press “Take the pictures”, then stand where {who} the whole shirt, arms out.",
+                f"Press “Take the pictures”, then stand where {viewers} the whole shirt, arms out.",
                 0.0,
             )
         job = self._context.job
@@ -240,16 +244,16 @@ class ColourStep:
             return StepState.WORKING, f"Finding the shirt: {what}.", share
         if job is not None or self._to_solve:
             return StepState.WORKING, "Reading the light from the strokes.", 0.9
-        return self._judged()
+        return self._solution_status()
 
-    def _judged(self) -> tuple[StepState, str, float]:
+    def _solution_status(self) -> tuple[StepState, str, float]:
         solved = self._solution.cameras
-        bad = [name for name, one in solved.items() if one.W is None]
+        bad = [name for name, solution in solved.items() if solution.W is None]
         empty = [name for name in self._canvases if name not in solved]
         if bad:
             return (
                 StepState.FAILED,
-                f"The strokes of {_listed(bad)} cannot be right yet: mend them with the brush.",
+                f"The strokes of {_join_names(bad)} cannot be right yet: mend them with the brush.",
                 0.5,
             )
         if not solved:
@@ -261,7 +265,7 @@ class ColourStep:
         if empty:
             return (
                 StepState.DONE,
-                f"The colours are known, but not for {_listed(empty)}: draw there too, or go on.",
+                f"The colours are known, but not for {_join_names(empty)}: draw there too, or go on.",
                 1.0,
             )
         return (
@@ -275,11 +279,11 @@ def _solve(
     drawn: Mapping[str, StrokeDrawing],
     personal: bool,
     before: Mapping[str, CameraSolution],
-    tell: Tell,
+    report: Tell,
 ) -> Solution:
-    tell("reading the light from the strokes", 0.5)
+    report("reading the light from the strokes", 0.5)
     return solve_colours(drawn, personal, before)
 
 
-def _listed(names: list[str]) -> str:
+def _join_names(names: list[str]) -> str:
     return " and ".join(names)

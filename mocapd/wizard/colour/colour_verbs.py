@@ -1,4 +1,4 @@
-"""What a person can say in the step Colours: each verb with its arguments and their ranges."""
+"""Commands of the step Colours, with their arguments and ranges."""
 
 from typing import Annotated
 
@@ -19,12 +19,12 @@ class Freeze(Command, frozen=True):
 
 
 class Propose(Command, frozen=True):
-    """Propose strokes anew on the pictures that are there."""
+    """Propose strokes again on the present pictures."""
 
 
 class Strokes(OfCamera, frozen=True):
-    """The camera's strokes now: colour ids as an 8-bit grey PNG of the picture's size. by: the page
-    that drew them, so that it knows its own when it sees them again."""
+    """The camera's present strokes: colour ids as an 8-bit grey PNG of the picture's size. by: the page that drew them,
+    so that it recognises its own strokes."""
 
     refused = "the strokes did not come as a picture"
     fix = "reload the page and draw again"
@@ -33,7 +33,7 @@ class Strokes(OfCamera, frozen=True):
 
 
 class Personal(Command, frozen=True):
-    """Whether the colours of the wearer's own shirt are used, not the standard's."""
+    """Whether to use the colours of the wearer's own shirt instead of the standard's."""
 
     on: bool = False
 

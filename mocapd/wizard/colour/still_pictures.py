@@ -1,4 +1,4 @@
-"""A picture of each camera, of one moment, taken when a countdown has run out."""
+"""Simultaneous pictures of all cameras at the end of a countdown."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -7,29 +7,29 @@ from mocapd.clock import nanoseconds, seconds
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Frame
 
-_PATIENCE_S = 1.0  # for a camera that has no picture of after the countdown
+_PATIENCE_S = 1.0  # timeout for a camera without a picture after the countdown
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StillPictures:
-    """The pictures by camera id, and the cameras that gave none."""
+    """The pictures by camera id, and the cameras without one."""
 
     frames: dict[str, Frame]
     missing: tuple[str, ...]
 
 
 class Countdown:
-    """Counts down from its making; then takes the newest pictures, one by each camera."""
+    """Counts down from its creation; then takes the newest picture of each camera."""
 
     def __init__(self, now_ns: int, wait_s: float) -> None:
         self._due_ns = now_ns + nanoseconds(wait_s)
 
     def left_s(self, now_ns: int) -> float:
-        """Seconds until the pictures are taken; 0 when they are due."""
+        """Seconds until the pictures are due, at least 0."""
         return max(0.0, seconds(self._due_ns - now_ns))
 
-    def taken(self, hub: FrameHub, cameras: Iterable[str], now_ns: int) -> StillPictures | None:
-        """The pictures, none of before the countdown's end; None while they are waited for."""
+    def take(self, hub: FrameHub, cameras: Iterable[str], now_ns: int) -> StillPictures | None:
+        """The pictures after the countdown's end; None while waiting for them."""
         if now_ns < self._due_ns:
             return None
         newest = {name: hub.newest(name) for name in cameras}

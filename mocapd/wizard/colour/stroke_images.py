@@ -1,4 +1,4 @@
-"""Strokes and pictures as the page's files: grey PNG of colour ids, JPEG of what was frozen, PNG of what is seen."""
+"""Image files for the page: strokes as grey PNG of colour ids, frozen pictures as JPEG, previews as PNG."""
 
 import base64
 
@@ -10,7 +10,7 @@ from mocapd.errors import InputError, MalformedError
 from mocapd.shirt.standard_shirt import N_COLOURS, standard_shirt
 from mocapd.types import Bytes
 
-_ROOM = 0.35  # brightness of what is not the shirt
+_ROOM = 0.35  # brightness of everything but the shirt
 _RELOAD = "reload the page and draw again"
 
 
@@ -38,25 +38,25 @@ def decode_strokes(png_base64: str, size_px: tuple[int, int], camera: str) -> By
 
 def encode_strokes(strokes: Bytes) -> bytes:
     """Strokes (h,w) as an 8-bit grey PNG."""
-    return _encoded(".png", strokes, [cv2.IMWRITE_PNG_COMPRESSION, 3])
+    return _encode(".png", strokes, [cv2.IMWRITE_PNG_COMPRESSION, 3])
 
 
 def encode_picture(pixels: Bytes) -> bytes:
     """A frozen picture (h,w,3) BGR as JPEG, good enough to draw on."""
-    return _encoded(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, 90])
+    return _encode(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, 90])
 
 
-def encode_seen(pixels: Bytes, ids: Bytes) -> bytes:
-    """What is read as the shirt, ids (h,w), in the standard's colours over the dimmed picture (h,w,3) BGR, as PNG."""
+def encode_preview(pixels: Bytes, ids: Bytes) -> bytes:
+    """Pixels that read as the shirt, ids (h,w), in the standard's colours over the dimmed picture (h,w,3) BGR, as PNG."""
     grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY)
     shown = np.repeat((_ROOM * grey).astype(np.uint8)[..., None], 3, axis=2)
     palette = np.zeros((N_COLOURS + 1, 3), np.uint8)
     palette[1:] = standard_shirt().srgb[:, ::-1]
     shown[ids > 0] = palette[ids[ids > 0]]
-    return _encoded(".png", shown, [cv2.IMWRITE_PNG_COMPRESSION, 3])
+    return _encode(".png", shown, [cv2.IMWRITE_PNG_COMPRESSION, 3])
 
 
-def _encoded(kind: str, image: Bytes, options: list[int]) -> bytes:
+def _encode(kind: str, image: Bytes, options: list[int]) -> bytes:
     done, data = cv2.imencode(kind, image, options)
     assert done, f"cv2 cannot write {kind}"
     return data.tobytes()

@@ -1,4 +1,4 @@
-"""Strokes proposed on the frozen pictures with what the setup knows by now: rig, lenses, stature."""
+"""Proposes strokes on the frozen pictures with the setup's present data: rig, lenses, stature."""
 
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -19,21 +19,21 @@ from mocapd.types import Bytes, Camera
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.step import Tell
 
-_THREADS = 2  # the kernels let others run beside them
+_THREADS = 2  # the kernels release the GIL
 _LOOKING = "looking for the shirt in any light"
-_LOADED = 0.1  # share of the work when the database is there
+_LOADED = 0.1  # share of the work for loading the database
 
 
 LoadDatabase = Callable[[Path, Tell], PoseDatabase]
 
 
-def pose_database(cache_dir: Path, tell: Tell) -> PoseDatabase:
-    """From the cache, or made, which takes a minute or two."""
-    tell("loading the pose database", 0.0)
+def pose_database(cache_dir: Path, report: Tell) -> PoseDatabase:
+    """Loads the database from the cache, or makes it, which takes a minute or two."""
+    report("loading the pose database", 0.0)
     with ThreadPoolExecutor(_THREADS) as pool:
         return load_or_build(
             cache_dir,
-            progress=lambda share: tell("making the pose database, once only", _LOADED * share),
+            progress=lambda share: report("making the pose database, once only", _LOADED * share),
             map_chunks=pool.map,
         ).database
 
@@ -42,25 +42,25 @@ def propose(
     pictures: Mapping[str, Bytes],
     draft: Draft,
     cache_dir: Path,
-    tell: Tell,
+    report: Tell,
     load: LoadDatabase = pose_database,
 ) -> dict[str, Proposal | InputError]:
-    """By camera: strokes, or why there are none. Raises nothing but the database's CannotCreateError."""
-    database = load(cache_dir, tell)
+    """By camera: strokes, or the reason for none. Raises only the database's CannotCreateError."""
+    database = load(cache_dir, report)
     model = colour_model(())
     stature_m = draft.stature_m if draft.stature_m is not None else MEAN_STATURE_M
-    tell(_LOOKING, _LOADED)
+    report(_LOOKING, _LOADED)
     rig = draft.rig
     if rig is not None and len(pictures) > 1 and set(pictures) <= set(rig.names):
         try:
             with ThreadPoolExecutor(_THREADS) as pool:
-                found = propose_strokes_together(
+                proposals = propose_strokes_together(
                     pictures, rig, model, database, stature_m,
-                    lambda share: tell(_LOOKING, _LOADED + (1.0 - _LOADED) * share), pool.map,
+                    lambda share: report(_LOOKING, _LOADED + (1.0 - _LOADED) * share), pool.map,
                 )  # fmt: skip
         except InputError as error:
             return dict.fromkeys(pictures, error)
-        return {name: found.get(name) or _nobody(name) for name in pictures}
+        return {name: proposals.get(name) or _no_shirt(name) for name in pictures}
     done: list[str] = []
 
     def alone(name: str) -> Proposal | InputError:
@@ -70,13 +70,13 @@ def propose(
             return error
         finally:
             done.append(name)
-            tell(_LOOKING, _LOADED + (1.0 - _LOADED) * len(done) / len(pictures))
+            report(_LOOKING, _LOADED + (1.0 - _LOADED) * len(done) / len(pictures))
 
     with ThreadPoolExecutor(_THREADS) as pool:
         return dict(zip(pictures, pool.map(alone, pictures), strict=True))
 
 
-def _nobody(camera: str) -> InputError:
+def _no_shirt(camera: str) -> InputError:
     return InputError(
         "no shirt was found under any light",
         camera,
@@ -85,7 +85,7 @@ def _nobody(camera: str) -> InputError:
 
 
 def _camera(name: str, draft: Draft) -> Camera | None:
-    """The camera with its lens, its place guessed; None when its lens is not known."""
+    """The camera with its intrinsics, at a nominal pose; None without intrinsics."""
     if draft.rig is not None and name in draft.rig.names:
         return draft.rig.cameras[draft.rig.names.index(name)]
     intrinsics = draft.intrinsics.get(name)

@@ -1,1 +1,1 @@
-"""The step Room: where the cameras stand, with the board or from the wearer alone."""
+"""The step Room: extrinsics, with the board or from the wearer alone."""

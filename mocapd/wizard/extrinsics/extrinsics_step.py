@@ -1,4 +1,4 @@
-"""The step Room hands over to the way that was chosen, the board or the wearer alone.
+"""The step Room delegates to the chosen method, the board or the wearer alone.
 
 Its commands are `extrinsics_verbs.ROOM` and the method's own.
 """
@@ -21,7 +21,7 @@ from mocapd.wizard.step_names import StepName
 
 
 class ExtrinsicsMethod(Protocol):
-    """A way to find the extrinsics: as a Step, which see, but for the name."""
+    """A method of finding the extrinsics: the interface of Step, without a name."""
 
     @property
     def verbs(self) -> Verbs: ...
@@ -39,7 +39,7 @@ METHODS: Mapping[str, Callable[[Context], ExtrinsicsMethod]] = MappingProxyType(
 
 
 class ExtrinsicsStep:
-    """Hands everything on to the method that was chosen; the board's to begin with."""
+    """Delegates to the chosen method; at first the board's."""
 
     name = StepName.ROOM
 
@@ -66,7 +66,7 @@ class ExtrinsicsStep:
         self._method.enter()
 
     def tick(self, now_ns: int) -> None:
-        """See Step. Without the shirt only the board is left."""
+        """See Step. Without the shirt only the board's method is available."""
         if not self._context.draft.has_shirt and self._context.job is None:
             self._choose("board")
         self._method.tick(now_ns)
@@ -99,7 +99,7 @@ class ExtrinsicsStep:
         return replace(view, details=details, problems=problems, overlays=self._area)
 
     def _advise(self) -> None:
-        """What would make the rig better, and the play area in the pictures; it is worked out once a rig."""
+        """Advice on the rig, and the play area in the pictures; computed once per rig."""
         rig = self._context.draft.rig
         if rig is not self._advised_rig:
             self._advised_rig, self._advised = rig, advice_of(rig)

@@ -1,4 +1,4 @@
-"""What a person can say in the step Room: each verb with its arguments and their ranges."""
+"""Commands of the step Room, with their arguments and ranges."""
 
 from typing import Literal
 
@@ -6,7 +6,7 @@ from mocapd.wizard.commands import Command, Verbs
 
 
 class Method(Command, frozen=True):
-    """How the room is found; wearer: true does the same as method: "wearer"."""
+    """The method of the extrinsics; wearer: true equals method: "wearer"."""
 
     refused = "there is no such method"
     fix = "take board or wearer"
@@ -19,11 +19,11 @@ class Floor(Command, frozen=True):
 
 
 class SkipFloor(Command, frozen=True):
-    """Go on with a guessed one."""
+    """Go on with a guess of the floor."""
 
 
 class Solve(Command, frozen=True):
-    """With the observations there are."""
+    """Solve with the present observations."""
 
 
 class StartWalk(Command, frozen=True):

@@ -40,11 +40,11 @@ from mocapd.wizard.step import Json, Scene, StepState, StepView, Tell
 _FACING = (
     "; cameras that face each other need a board printed on both sides (mocapd board --two-sided)"
 )
-_PATIENCE_NS = 8_000_000_000  # before it is said that a camera shares no sighting
+_PATIENCE_NS = 8_000_000_000  # before the message that a camera shares no sighting
 
 
 class BoardPhase(StrEnum):
-    """How far it has come."""
+    """The phase of the method."""
 
     COLLECT = "collect"
     FLOOR = "floor"
@@ -52,7 +52,7 @@ class BoardPhase(StrEnum):
 
 
 class ExtrinsicsWithBoard:
-    """See the head of this file. The draft is changed when the floor is known or skipped."""
+    """See the module. Changes the draft after measuring or skipping the floor."""
 
     verbs = BOARD_ROOM
 
@@ -62,17 +62,17 @@ class ExtrinsicsWithBoard:
         self._cameras = draft.cameras
         self._names = {camera.id: camera.label or camera.id for camera in draft.cameras}
         self._spec = draft.board or usual_board()
-        self._seen = self._begin_anew()
-        known = {index for own in draft.board_views.values() for index in own}
-        self._earlier = frozenset(known)
-        first = INDEX_STEP * (max(known, default=0) // INDEX_STEP + 1)
+        self._collection = self._start_over()
+        indices = {index for own in draft.board_views.values() for index in own}
+        self._earlier = frozenset(indices)
+        first = INDEX_STEP * (max(indices, default=0) // INDEX_STEP + 1)
         self._watch = BoardWatch(
             context.hub, [camera.id for camera in self._cameras], self._spec, first
         )
         self._advice = BoardAdvice(context, lambda _spec: None)
         self._rest = BoardAtRest()
         self._stage = BoardPhase.COLLECT
-        self._asked = False  # by hand, to solve with what there is
+        self._asked = False  # the user asked to solve with the present sightings
         self._solving = False
         self._now_ns = 0
         self._begun_ns: int | None = None
@@ -108,14 +108,14 @@ class ExtrinsicsWithBoard:
         if look is not None:
             self._advice.take(look)
             if self._stage is BoardPhase.COLLECT:
-                self._seen.offer(look)
+                self._collection.offer(look)
             else:
                 self._watch_floor(look)
             self._advice.ask(now_ns, look.frames, self._spec)
         if (
             self._stage is BoardPhase.COLLECT
             and self._context.job is None
-            and (self._asked or self._seen.due)
+            and (self._asked or self._collection.due)
         ):
             self._solve()
 
@@ -127,7 +127,7 @@ class ExtrinsicsWithBoard:
             case SkipFloor():
                 self._skip_floor()
             case Solve():
-                if self._stage is not BoardPhase.COLLECT or not self._seen.solvable:
+                if self._stage is not BoardPhase.COLLECT or not self._collection.solvable:
                     raise InputError(
                         "there is nothing to solve yet",
                         "room",
@@ -142,8 +142,8 @@ class ExtrinsicsWithBoard:
         self._solving = False
         self._refusal = Problem.of(error)
         if isinstance(error, ContradictionError):
-            # nothing tells which of them are wrong
-            self._seen = self._begin_anew()
+            # the wrong ones cannot be identified
+            self._collection = self._start_over()
 
     def view(self) -> StepView:
         """See Step."""
@@ -154,7 +154,7 @@ class ExtrinsicsWithBoard:
             state = StepState.WORKING
         elif self._refusal is not None:
             state = StepState.FAILED
-        overlays = self._watch.shapes(self._now_ns, self._seen.still_px())
+        overlays = self._watch.shapes(self._now_ns, self._collection.still_px())
         return StepView(
             state,
             self._sentence(),
@@ -166,26 +166,26 @@ class ExtrinsicsWithBoard:
 
     # -- sightings -------------------------------------------------------------------------------
 
-    def _begin_anew(self) -> BoardCollection:
-        """With those of the step Lens only."""
+    def _start_over(self) -> BoardCollection:
+        """The sightings of the step Lens only."""
         sizes_px = {camera.id: camera.size_px for camera in self._cameras}
         return BoardCollection(sizes_px, self._spec, self._context.draft.board_views)
 
     def _solve(self) -> None:
-        self._seen.try_now()
+        self._collection.try_now()
         self._asked, self._solving = False, True
-        views, spec, earlier = self._seen.views, self._spec, self._earlier
+        views, spec, earlier = self._collection.views, self._spec, self._earlier
         measured = self._context.draft.intrinsics
         intrinsics_of = {camera.id: measured[camera.id] for camera in self._cameras}
 
-        def job(tell: Tell) -> tuple[SceneExtrinsics, WorldExtrinsics]:
-            tell("the room", 0.0)
+        def job(report: Tell) -> tuple[SceneExtrinsics, WorldExtrinsics]:
+            report("the room", 0.0)
             return solve_live(intrinsics_of, spec, views, earlier)
 
-        def done(found: tuple[SceneExtrinsics, WorldExtrinsics]) -> None:
+        def done(solution: tuple[SceneExtrinsics, WorldExtrinsics]) -> None:
             self._solving = False
-            self._extrinsics, self._made = found
-            self._plan = plan_of(*found)
+            self._extrinsics, self._made = solution
+            self._plan = plan_of(*solution)
             self._to_floor()
 
         self._context.start_job(job, done)
@@ -198,13 +198,16 @@ class ExtrinsicsWithBoard:
         self._context.scene(Scene.FLOOR)
 
     def _watch_floor(self, look: Look) -> None:
-        still = {name: self._seen.still(name, seen) for name, seen in look.seen.items()}
+        still = {
+            name: self._collection.still(name, observation)
+            for name, observation in look.observations.items()
+        }
         self._rest.take(look, still)
-        if self._extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.seen:
+        if self._extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.has_enough:
             return
         views = self._rest.views()
         try:
-            # with its back up it is refused with what is wrong
+            # a board with its back up gets an error with the remedy
             if looks_like_floor(self._extrinsics, views) or lies_on_its_face(
                 self._extrinsics, views
             ):
@@ -218,7 +221,7 @@ class ExtrinsicsWithBoard:
             raise InputError(
                 "the cameras' places are not known yet", "room", "hold the board before the cameras"
             )
-        if not self._rest.seen:
+        if not self._rest.has_enough:
             raise InputError(
                 "no camera sees the board lie still",
                 "the floor",
@@ -231,7 +234,7 @@ class ExtrinsicsWithBoard:
             raise InputError(error.what, error.where, error.fix) from None
 
     def _lay_down(self) -> None:
-        """Raises ConfigError when the floor is none."""
+        """Raises ConfigError when the board does not lie on the floor."""
         assert self._extrinsics is not None
         views = self._rest.views()
         index = next(iter(views.values())).index
@@ -260,7 +263,7 @@ class ExtrinsicsWithBoard:
         self._context.draft = replace(
             self._context.draft,
             board=self._spec,
-            board_views=self._seen.views,
+            board_views=self._collection.views,
             rig=made.rig,
             floor_known=floor_known,
             extrinsics_quality=ExtrinsicsQuality(
@@ -272,19 +275,19 @@ class ExtrinsicsWithBoard:
         )
         self._context.scene(Scene.EMPTY)
 
-    # -- what is told ----------------------------------------------------------------------------
+    # -- messages --------------------------------------------------------------------------------
 
     def _sentence(self) -> str:
         if self._stage is BoardPhase.DONE:
             return "The room is known. Go on."
         if self._stage is BoardPhase.FLOOR:
-            if self._rest.seen:
+            if self._rest.has_enough:
                 return "Leave the board where it lies."
             side = "the side that says FRONT up" if self._spec.two_sided else "printed side up"
             return f"Lay the board on the floor, {side}, in the middle of where players stand."
         if self._solving:
             return "Working out where the cameras stand. You can go on showing the board."
-        apart = self._seen.apart()
+        apart = self._collection.apart()
         if apart and len(self._cameras) > 2:
             name = self._names[apart[0]]
             sides = ", from either side" if self._spec.two_sided else ""
@@ -304,52 +307,52 @@ class ExtrinsicsWithBoard:
             return 1.0
         if self._stage is BoardPhase.FLOOR:
             return 0.75 + 0.2 * min(1.0, self._rest.since_ns / LONG_NS)
-        return 0.7 * self._seen.progress
+        return 0.7 * self._collection.progress
 
     def _problems(self) -> tuple[Problem, ...]:
-        told = list(stopped_cameras(self._context, [camera.id for camera in self._cameras]))
+        problems = list(stopped_cameras(self._context, [camera.id for camera in self._cameras]))
         if self._stage is not BoardPhase.COLLECT and self._made is not None and self._made.gluing:
             trouble = gluing_trouble(self._made.gluing)
-            told += [Problem(trouble, "the board")] if trouble else []
+            problems += [Problem(trouble, "the board")] if trouble else []
         if self._stage is BoardPhase.DONE:
             if not self._context.draft.floor_known:
-                told.append(
+                problems.append(
                     Problem(
                         "the floor is guessed: up from the cameras, height from the board's lowest place",
                         "the floor",
                         "begin again and lay the board on the floor for a true one",
                     )
                 )
-            return tuple(told)
-        told += [self._refusal] if self._refusal is not None else []
+            return tuple(problems)
+        problems += [self._refusal] if self._refusal is not None else []
         patient = self._begun_ns is None or self._now_ns - self._begun_ns < _PATIENCE_NS
         if self._stage is BoardPhase.COLLECT and not patient:
-            told += [
+            problems += [
                 Problem(
                     "it never sees the board at the same moment as another camera",
                     self._names[name],
                     "hold the board still where it and another camera see it, or turn them together"
                     + ("" if self._spec.two_sided else _FACING),
                 )
-                for name in self._seen.lonely()
+                for name in self._collection.lonely()
             ]
-        # on the floor one camera that sees the board is enough
+        # for the floor one camera with the board is enough
         wanted = {camera.id: self._stage is BoardPhase.COLLECT for camera in self._cameras}
-        return (*told, *self._advice.problems(self._now_ns, wanted))
+        return (*problems, *self._advice.problems(self._now_ns, wanted))
 
     def _details(self) -> dict[str, Json]:
         return {
             "stage": self._stage.value,
             "solving": self._solving,
             "names": dict(self._names),
-            "moments": self._seen.count,
+            "moments": self._collection.count,
             "enough": ENOUGH,
             "pairs": [
-                {"a": a, "b": b, "shared": self._seen.shared(a, b)}
+                {"a": a, "b": b, "shared": self._collection.common_count(a, b)}
                 for a, b in combinations(self._names, 2)
             ],
-            "at_rest": self._rest.seen,
-            "can_solve": self._stage is BoardPhase.COLLECT and self._seen.solvable,
+            "at_rest": self._rest.has_enough,
+            "can_solve": self._stage is BoardPhase.COLLECT and self._collection.solvable,
             "can_skip_floor": self._stage is BoardPhase.FLOOR and self._made is not None,
             "floor_known": self._stage is BoardPhase.DONE and self._context.draft.floor_known,
             "quality": None if self._made is None else quality_of(self._made),

@@ -2,8 +2,8 @@
 
 Its commands are `extrinsics_verbs.WEARER_ROOM`.
 
-It needs intrinsics, colours and stature. A rig that is there already, of cameras that were bumped since, is
-where the search begins.
+It needs intrinsics, colours and stature. An existing rig, of cameras that were bumped since, is the initial value of the
+search.
 """
 
 import math
@@ -24,11 +24,11 @@ from mocapd.wizard.extrinsics.wearer_walk import SEEN, Walk, WearerExtrinsics, w
 from mocapd.wizard.step import Json, Scene, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
-_SHOWN_PLACES = 12  # of the wearer's way, in the plan of the rig
+_SHOWN_PLACES = 12  # of the wearer's path, in the plan of the rig
 
 
 class ExtrinsicsWithWearer:
-    """See the head of this file. The draft is changed when they are found."""
+    """See the module. Changes the draft after a solution."""
 
     name = StepName.ROOM
     verbs = WEARER_ROOM
@@ -41,7 +41,7 @@ class ExtrinsicsWithWearer:
     ) -> None:
         self._context, self._load = context, load
         self._params = params if params is not None else WalkParams()
-        self._walk: Walk | None = None  # while a job runs
+        self._walk: Walk | None = None  # during a job
         self._walk_next = False
         self._refusal: Problem | None = None
         self._found: WearerExtrinsics | None = None
@@ -53,11 +53,11 @@ class ExtrinsicsWithWearer:
         self._context.scene(Scene.MOVING)
 
     def leave(self) -> None:
-        """The job ends for itself."""
+        """The job ends by itself."""
         self._stop()
 
     def tick(self, now_ns: int) -> None:
-        """Start the job that waits."""
+        """Start the pending job."""
         del now_ns
         if self._walk_next and self._context.job is None:
             self._walk_next = False
@@ -76,7 +76,7 @@ class ExtrinsicsWithWearer:
                 self._stop()
 
     def job_failed(self, error: MocapdError) -> None:
-        """It can be begun again; the rig that was there stays."""
+        """The user may begin again; an existing rig stays."""
         self._walk = None
         self._refusal = Problem.of(error)
 
@@ -88,28 +88,28 @@ class ExtrinsicsWithWearer:
         hub, draft, cache_dir = context.hub, context.draft, context.cache_dir
         load, params = self._load, self._params
 
-        def done(found: WearerExtrinsics | None) -> None:
+        def done(solution: WearerExtrinsics | None) -> None:
             if walk is not self._walk:
                 return
             self._walk = None
-            if found is not None:
-                self._take(found)
+            if solution is not None:
+                self._take(solution)
 
         context.start_job(
-            lambda tell: walk_and_solve(hub, draft, cache_dir, walk, tell, load, params), done
+            lambda report: walk_and_solve(hub, draft, cache_dir, walk, report, load, params), done
         )
 
-    def _take(self, found: WearerExtrinsics) -> None:
-        self._found = found
-        residuals = np.array(list(found.report.residual_px.values()))
+    def _take(self, solution: WearerExtrinsics) -> None:
+        self._found = solution
+        residuals = np.array(list(solution.report.residual_px.values()))
         self._context.draft = replace(
             self._context.draft,
-            rig=found.rig,
+            rig=solution.rig,
             floor_known=True,
             extrinsics_quality=ExtrinsicsQuality(
                 "wearer",
                 float(np.sqrt(np.mean(residuals**2))),
-                dict(found.report.residual_px),
+                dict(solution.report.residual_px),
                 math.nan,
             ),
         )
@@ -121,7 +121,7 @@ class ExtrinsicsWithWearer:
         self._walk_next = False
 
     def _missing(self) -> Problem | None:
-        """What must be known first."""
+        """The first missing input."""
         draft = self._context.draft
         if len(draft.cameras) < 2:
             return Problem("one camera makes no room", "room", "use the board, for the floor")
@@ -140,18 +140,18 @@ class ExtrinsicsWithWearer:
             )
         return None
 
-    # -- what is told ----------------------------------------------------------------------------
+    # -- messages --------------------------------------------------------------------------------
 
     def view(self) -> StepView:
         """See Step."""
-        state, sentence, progress = self._told()
+        state, sentence, progress = self._status()
         return StepView(state, sentence, progress, self._problems(), {}, self._details())
 
     @property
     def _busy(self) -> bool:
         return self._walk is not None or self._walk_next
 
-    def _told(self) -> tuple[StepState, str, float]:
+    def _status(self) -> tuple[StepState, str, float]:
         """State, sentence and progress."""
         missing = self._missing()
         if missing is not None:
@@ -176,34 +176,34 @@ class ExtrinsicsWithWearer:
         )
 
     def _uncertainty(self) -> str:
-        """How well, twice the standard deviations of the camera that is known worst."""
+        """Twice the standard deviations of the least certain camera."""
         assert self._found is not None
         uncertainties = self._found.report.uncertainties.values()
-        turn_deg = 2.0 * max(one.rotation_deg for one in uncertainties)
-        percent = 2.0 * max(one.distance_percent for one in uncertainties)
+        turn_deg = 2.0 * max(uncertainty.rotation_deg for uncertainty in uncertainties)
+        percent = 2.0 * max(uncertainty.distance_percent for uncertainty in uncertainties)
         return f" to about {turn_deg:.0f}° and {percent:.0f} %"
 
     def _problems(self) -> tuple[Problem, ...]:
-        told = list(stopped_cameras(self._context, [c.id for c in self._context.draft.cameras]))
+        problems = list(stopped_cameras(self._context, [c.id for c in self._context.draft.cameras]))
         missing = self._missing()
-        told += [missing] if missing is not None else []
-        told += [self._refusal] if self._refusal is not None else []
+        problems += [missing] if missing is not None else []
+        problems += [self._refusal] if self._refusal is not None else []
         if self._found is not None and not self._busy and self._refusal is None:
-            told.append(
+            problems.append(
                 Problem(
                     "a room without a board is coarser than one with it",
                     "room",
                     "use the board when positions matter to the centimetre",
                 )
             )
-        return tuple(told)
+        return tuple(problems)
 
     def _details(self) -> dict[str, Json]:
-        found, draft = self._found, self._context.draft
+        solution, draft = self._found, self._context.draft
         quality: dict[str, Json] | None = None
         plan: Json = None
-        if found is not None and draft.extrinsics_quality is not None:
-            report = found.report
+        if solution is not None and draft.extrinsics_quality is not None:
+            report = solution.report
             quality = {
                 "rms_px": round(draft.extrinsics_quality.rms_px, 3),
                 "play_area_cm": None,
@@ -211,25 +211,26 @@ class ExtrinsicsWithWearer:
                     name: {"rms_px": round(px, 3)} for name, px in report.residual_px.items()
                 },
                 "rotation_deg": {
-                    name: round(one.rotation_deg, 2) for name, one in report.uncertainties.items()
+                    name: round(uncertainty.rotation_deg, 2)
+                    for name, uncertainty in report.uncertainties.items()
                 },
                 "distance_percent": {
-                    name: round(one.distance_percent, 2)
-                    for name, one in report.uncertainties.items()
+                    name: round(uncertainty.distance_percent, 2)
+                    for name, uncertainty in report.uncertainties.items()
                 },
                 "match": round(report.match, 3),
             }
-            step = max(1, len(found.walked_m) // _SHOWN_PLACES)
+            step = max(1, len(solution.walked_m) // _SHOWN_PLACES)
             plan = {
-                **plan_of_cameras(found.rig),
-                "boards_m": np.round(found.walked_m[::step], 3).tolist(),
+                **plan_of_cameras(solution.rig),
+                "boards_m": np.round(solution.walked_m[::step], 3).tolist(),
             }
         return {
-            "stage": "done" if found is not None else "collect",
+            "stage": "done" if solution is not None else "collect",
             "solving": self._busy,
             "names": {camera.id: camera.label or camera.id for camera in draft.cameras},
-            "seen_s": {} if self._walk is None else dict(self._walk.seen_s),
-            "floor_known": found is not None,
+            "seen_s": {} if self._walk is None else dict(self._walk.visible_s),
+            "floor_known": solution is not None,
             "quality": quality,
             "plan": plan,
             "actions": self._actions(),

@@ -1,4 +1,4 @@
-"""The job of the extrinsics without a board: the wearer is followed in every camera alone, then all is solved."""
+"""The job of the extrinsics without a board: tracks the wearer in every camera alone, then solves."""
 
 import threading
 from collections.abc import Callable, Mapping
@@ -25,13 +25,13 @@ from mocapd.wizard.only_cameras import OnlyCameras
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Tell
 
-READY, SEEN = 0.1, 0.85  # shares of the job: the trackers are ready, enough is seen
-_TIMEOUT_S = 0.2  # for a frame set, after which `stop` is looked at
+READY, SEEN = 0.1, 0.85  # shares of the job: the trackers are ready, enough observations
+_TIMEOUT_S = 0.2  # for a frame set; then `stop` is checked
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WearerExtrinsics:
-    """The extrinsics, how good they are, and where the wearer walked (N,3) [m]."""
+    """The extrinsics, their quality, and the wearer's path (N,3) [m]."""
 
     rig: Rig
     report: SelfCalibrationReport
@@ -40,9 +40,9 @@ class WearerExtrinsics:
 
 @dataclass(slots=True, eq=False)
 class Walk:
-    """Between the job and the step: what was seen so far, and an early end."""
+    """Shared by the job and the step: visibility so far, and a request to stop."""
 
-    seen_s: Mapping[str, float] = field(default_factory=dict)
+    visible_s: Mapping[str, float] = field(default_factory=dict)
     stop: threading.Event = field(default_factory=threading.Event)
 
 
@@ -51,14 +51,14 @@ def walk_and_solve(
     draft: Draft,
     cache_dir: Path,
     walk: Walk,
-    tell: Tell,
+    progress: Tell,
     load: LoadDatabase,
     params: WalkParams,
     clock: Callable[[], int] = monotonic_ns,
 ) -> WearerExtrinsics | None:
-    """The extrinsics of a draft whose intrinsics, colours and stature are known; None when stopped.
+    """The extrinsics of a draft that has intrinsics, colours and stature; None when stopped.
 
-    Raises InputError when too little was seen, ConfigError when what was seen does not agree.
+    Raises InputError for too few observations, ConfigError for contradicting ones.
     """
     assert draft.stature_m is not None
     bare_cameras = draft_cameras(draft)
@@ -66,13 +66,13 @@ def walk_and_solve(
     shirt = calibration_of(placed).shirt or ShirtColours()
     colours = colour_model(shirt.model)
     W = white_balances(shirt.white_balance, colours)
-    database = load(cache_dir, lambda what, share: tell(what, READY * share))
+    database = load(cache_dir, lambda what, share: progress(what, READY * share))
     tracks = PatchTracks(bare_cameras, draft.stature_m, colours, W, database)
     if not _follow(
-        hub, tracks, Coverage([c.name for c in bare_cameras], params), walk, tell, params, clock
+        hub, tracks, Coverage([c.name for c in bare_cameras], params), walk, progress, params, clock
     ):
         return None
-    tell("working out where the cameras stand", SEEN)
+    progress("working out where the cameras stand", SEEN)
     near = draft.rig
     if near is not None and set(near.names) != {camera.name for camera in bare_cameras}:
         near = None
@@ -89,7 +89,7 @@ def walk_and_solve(
 
 
 def draft_cameras(draft: Draft) -> list[Camera]:
-    """The draft's cameras with their intrinsics; they stand anywhere."""
+    """The draft's cameras with their intrinsics, at any pose."""
     out = []
     for camera in draft.cameras:
         intrinsics = draft.intrinsics[camera.id]
@@ -104,11 +104,11 @@ def _follow(
     tracks: PatchTracks,
     coverage: Coverage,
     walk: Walk,
-    tell: Tell,
+    progress: Tell,
     params: WalkParams,
     clock: Callable[[], int],
 ) -> bool:
-    """Follow the hub's frames until enough is seen; False when stopped. Raises InputError."""
+    """Track the hub's frames until there is enough; False when stopped. Raises InputError."""
     names = frozenset(camera.name for camera in tracks.cameras)
     collector = FrameCollector([camera.name for camera in tracks.cameras], hub.bundler)
     entry = OnlyCameras(collector, names)
@@ -124,19 +124,19 @@ def _follow(
             if frames is None:
                 continue
             coverage.add(tracks.add(frames), frames.t_ns)
-            walk.seen_s = dict(coverage.seen_s)
-            tell(coverage.advice, READY + (SEEN - READY) * coverage.share)
+            walk.visible_s = dict(coverage.visible_s)
+            progress(coverage.advice, READY + (SEEN - READY) * coverage.share)
         return True
     finally:
         hub.leave(entry)
 
 
 def _too_little(coverage: Coverage) -> InputError:
-    least = min(coverage.seen_s, key=lambda name: coverage.seen_s[name])
+    least = min(coverage.visible_s, key=lambda name: coverage.visible_s[name])
     return InputError(
         f"two cameras together saw the wearer for {coverage.good_s:.0f} s only",
         f"camera {least!r}, which saw least"
-        if coverage.seen_s[least] < coverage.good_s + 5.0
+        if coverage.visible_s[least] < coverage.good_s + 5.0
         else "room",
         "check the colours, walk where all cameras see the whole shirt, and begin again",
     )

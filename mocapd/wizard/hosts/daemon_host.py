@@ -1,4 +1,4 @@
-"""What serves the page while a daemon runs: its cameras and bodies, and a setup when somebody asks for one."""
+"""The host of the page in a daemon: its cameras and bodies, and a setup on demand."""
 
 import logging
 import threading
@@ -31,51 +31,51 @@ from mocapd.wizard.setup_keeper import SetupKeeper
 from mocapd.wizard.steps import SetupCameras, all_steps
 from mocapd.wizard.wizard import Wizard
 
-FORGOTTEN_S = 120.0  # a setup that no page has looked at for so long is ended [s]
-_SIZE_PX = (640, 480)  # of a camera that does not tell
+FORGOTTEN_S = 120.0  # timeout of a setup that no page watches [s]
+_SIZE_PX = (640, 480)  # of a camera that does not report one
 
 _log = logging.getLogger(__name__)
 
 
 class DaemonHost:
-    """A Host (see web.host) over a service, whatever its session: it must `rest` while that is changed.
+    """A Host (see web.host) over a service with any session; it must `rest` during a change of sessions.
 
-    `saved` is set when a setup has saved its calibration.
+    `saved`: set when a setup has saved its calibration.
     """
 
     def __init__(self, service: Service) -> None:
         self._service = service
         self.saved = threading.Event()
-        self._lock = threading.Lock()  # guards what follows
+        self._lock = threading.Lock()  # guards the following
         self._resting = False
         self._wizard: Wizard | None = None
         self._locks: CameraLocks | None = None
-        self._checked = NewestBody()  # by the setup's own tracker, while its step Check runs one
+        self._checked = NewestBody()  # of the setup's own tracker, during its step Check
         self._looked_s = 0.0
         self.recordings = Recordings(service.config.state_dir / "recordings", self._recorder)
 
     # -- the owner's -----------------------------------------------------------------------------
 
     def rest(self) -> None:
-        """The session is about to end: so does a setup on its cameras."""
+        """Called before the session ends: ends a setup on its cameras."""
         with self._lock:
             self._resting = True
         self._end_setup()
 
     def resume(self) -> None:
-        """One runs that stays."""
+        """Called after a new session started."""
         with self._lock:
             self._resting = False
 
     def close(self) -> None:
-        """The service is about to end: a recording that is being made is completed."""
+        """Called before the service ends: completes a recording in progress."""
         try:
             self.recordings.close()
         except MocapdError as error:
             _log.warning("the page's recording: %s", error)
 
     def beat(self) -> None:
-        """About once a second: a setup that was left behind gives the cameras back what it took."""
+        """Called about once a second: an abandoned setup releases the cameras."""
         if self._wizard is not None and time.monotonic() - self._looked_s > FORGOTTEN_S:
             _log.info("the setup is ended: no page has looked at it for %g s", FORGOTTEN_S)
             self._end_setup()
@@ -120,7 +120,7 @@ class DaemonHost:
             return self._wizard
 
     def _recorder(self, path: Path) -> BodyRecorder:
-        """Of the service, whatever its session. Raises CannotCreateError."""
+        """A recorder of the service, for any session. Raises CannotCreateError."""
         return BodyRecorder(self._service.bodies, path, self.known(), self._service.instance)
 
     def recenter(self) -> None:
@@ -143,11 +143,11 @@ class DaemonHost:
         self._locks = CameraLocks(camera.source for camera in session.cameras)
         state_dir = state_dir_of(config, session)
         cameras, draft = _with_what_was_saved(_cameras_of(session, config), state_dir)
-        moved = _moved(draft)
-        for one in moved:
-            draft = same_camera(draft, one)
-        sources = {one.id: one.source for one in draft.cameras}
-        cameras = tuple(replace(one, source=sources[one.id]) for one in cameras)
+        moved = _port_changes(draft)
+        for change in moved:
+            draft = same_camera(draft, change)
+        sources = {camera.id: camera.source for camera in draft.cameras}
+        cameras = tuple(replace(camera, source=sources[camera.id]) for camera in cameras)
         steps = all_steps(
             SetupCameras(cameras, list_cameras, self._locks, moved),
             CheckSettings(config.tracker, config.smoothing.preset, service.hub.bundler),
@@ -179,7 +179,7 @@ class DaemonHost:
 
 
 def state_dir_of(config: Config, session: Session) -> Path:
-    """Where a setup is saved; what simulated cameras give never takes the place of a real calibration."""
+    """The directory for saving a setup; simulated cameras never replace a real calibration."""
     if session.rig_source == str(config.state_dir / FILE_NAME):
         return config.state_dir
     simulated = any(is_simulated(camera.address) for camera in session.cameras)
@@ -187,33 +187,33 @@ def state_dir_of(config: Config, session: Session) -> Path:
 
 
 def _cameras_of(session: Session, config: Config) -> tuple[DraftCamera, ...]:
-    """The daemon's cameras as a draft has them."""
+    """The daemon's cameras in the form of a draft."""
     asked = {camera.id: camera for camera in config.camera}
-    found = []
+    cameras = []
     for one in session.cameras:
         name = one.source.name
         size_px = one.size_px if any(one.size_px) else _SIZE_PX
         camera = DraftCamera(name, one.address, size_px, one.expected_hz or 30.0)
         if name in asked:
             camera = replace(camera, controls=asked[name].controls)
-        found.append(camera)
-    return tuple(found)
+        cameras.append(camera)
+    return tuple(cameras)
 
 
 def _with_what_was_saved(
     cameras: tuple[DraftCamera, ...], state_dir: Path
 ) -> tuple[tuple[DraftCamera, ...], Draft]:
-    """The cameras as they were locked before, and the saved calibration when it is of just these."""
+    """The cameras with their saved controls, and the saved calibration if it is of just these."""
     try:
         saved = load_draft(state_dir)
     except MocapdError as error:  # none yet, or a damaged one
         _log.info("the setup begins from nothing: %s", error)
         return cameras, Draft(cameras=cameras)
-    before = {(one.id, one.source): one for one in saved.cameras}
-    cameras = tuple(before.get((one.id, one.source), one) for one in cameras)
+    before = {(camera.id, camera.source): camera for camera in saved.cameras}
+    cameras = tuple(before.get((camera.id, camera.source), camera) for camera in cameras)
     if set(cameras) == set(saved.cameras):
         return cameras, replace(saved, cameras=cameras)
-    # what was typed once need not be typed again
+    # input of the user that need not be repeated
     return cameras, Draft(
         cameras=cameras,
         board=saved.board,
@@ -222,8 +222,8 @@ def _with_what_was_saved(
     )
 
 
-def _moved(draft: Draft) -> tuple[PortChange, ...]:
-    """What the daemon itself has taken for the same camera, to be asked about."""
+def _port_changes(draft: Draft) -> tuple[PortChange, ...]:
+    """Cameras that the daemon itself identified at another port, for a question to the user."""
     nodes = video_nodes(SYSFS, DEV)
     present = dict.fromkeys(node.identity for node in nodes if node.identity is not None)
     return find_port_changes(draft.cameras, tuple(present))

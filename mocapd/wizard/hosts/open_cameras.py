@@ -16,13 +16,13 @@ from mocapd.pipeline.bundler import BundlerParams
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.draft import DraftCamera
 
-STOP_S = 1.4  # what all threads together may take to end; a stalled camera takes a second [s]
+STOP_S = 1.4  # for all threads together to end; a stalled camera takes a second [s]
 
 
 class OpenCameras:
-    """Captures from `start` to `stop`. Trouble with a camera is a state of it, and does not end the rest.
+    """Captures from `start` to `stop`. Trouble with a camera is a state of it, and does not affect the rest.
 
-    `died` hears of what nobody expected. Used by one thread, except `statuses`.
+    `died` gets unexpected exceptions. Used by one thread, except `statuses`.
     """
 
     def __init__(
@@ -32,17 +32,17 @@ class OpenCameras:
         sources: Mapping[str, Source] | None = None,
         bundler: BundlerParams | None = None,
     ) -> None:
-        """sources: by id, where they exist already; bundler: see FrameHub. Raises ConfigError or InputError
-        for a source that cannot be."""
+        """sources: existing ones, by id; bundler: see FrameHub. Raises ConfigError or InputError for an invalid
+        source."""
         self.cameras = tuple(cameras)
         self.hub = FrameHub((camera.id for camera in cameras), bundler=bundler)
         self._died = died
         self._pace = Pace(live=True)  # recordings start together and keep their own time
         given = sources or {}
-        self.sources = tuple(given.get(one.id) or self._source(one) for one in cameras)
+        self.sources = tuple(given.get(camera.id) or self._source(camera) for camera in cameras)
         self._captures = {
-            one.id: self._thread(source, one)
-            for one, source in zip(cameras, self.sources, strict=True)
+            camera.id: self._thread(source, camera)
+            for camera, source in zip(cameras, self.sources, strict=True)
         }
         self._care = CaptureCare(self._captures.values())
 
@@ -52,15 +52,15 @@ class OpenCameras:
             capture.start()
 
     def watch(self) -> None:
-        """Look after what may hang: call it several times a second."""
+        """Recover stalled cameras: call it several times a second."""
         self._care.watch()
 
     def statuses(self) -> Mapping[str, CaptureStatus]:
-        """How each camera fares, by id; from any thread."""
+        """The status of each camera, by id; from any thread."""
         return {name: capture.status() for name, capture in self._captures.items()}
 
     def stop(self) -> None:
-        """First everything lets go, then everything ends."""
+        """First signal all threads, then join them."""
         for capture in self._captures.values():
             capture.let_go()
         until_s = time.monotonic() + STOP_S
@@ -69,16 +69,18 @@ class OpenCameras:
 
     def _thread(self, source: Source, camera: DraftCamera) -> CaptureThread:
         expected_hz = None if source.recorded else camera.fps_hz
-        return CaptureThread(source, self.hub, self._ended, expected_hz)
+        return CaptureThread(source, self.hub, self._on_end, expected_hz)
 
     def _source(self, camera: DraftCamera) -> Source:
         settings = WebcamSettings(camera.size_px, camera.fps_hz, camera.controls)
-        others = identities_of((one.id, one.source) for one in self.cameras if one != camera)
+        others = identities_of(
+            (other.id, other.source) for other in self.cameras if other != camera
+        )
         request = SourceRequest(
             camera.id, settings=settings, others=tuple(others.values()), pace=self._pace
         )
         return open_source(camera.source, request)
 
-    def _ended(self, error: BaseException) -> None:
-        if not isinstance(error, MocapdError):  # those the camera's status tells
+    def _on_end(self, error: BaseException) -> None:
+        if not isinstance(error, MocapdError):  # the camera's status has those
             self._died(error)

@@ -1,4 +1,4 @@
-"""What serves the page when no daemon runs: the cameras and the setup, nothing else."""
+"""The host of the page without a daemon: the cameras and the setup only."""
 
 import threading
 from collections.abc import Callable, Mapping
@@ -42,31 +42,31 @@ class OwnHost:
         nodes: Callable[[], tuple[CameraInfo, ...]] = tuple,
         moved: tuple[PortChange, ...] = (),
     ) -> None:
-        """draft: what is known, with the cameras to open; step: the one to do, None for all of them;
-        sources: the draft's cameras by id where they exist already; nodes: lists what else is plugged
-        in; moved: see SetupCameras. Raises ConfigError or InputError."""
-        if step is StepName.COLOUR:  # of which the calibration may say that there is none
+        """draft: initial data, with the cameras to open; step: the only one to show, None for all of them;
+        sources: existing sources of the draft's cameras by id; nodes: lists other plugged-in cameras; moved: see
+        SetupCameras. Raises ConfigError or InputError."""
+        if step is StepName.COLOUR:  # a calibration may say that there is no shirt
             draft = replace(draft, has_shirt=True)
         self._over = Latch()
         self._saved = threading.Event()
         self._death: BaseException | None = None
-        self._cameras = OpenCameras(draft.cameras, self.died, sources, settings.bundler)
+        self._cameras = OpenCameras(draft.cameras, self.on_thread_died, sources, settings.bundler)
         self._locks = CameraLocks(self._cameras.sources)
         self._shown = NewestBody()
         of_cameras = SetupCameras(draft.cameras, nodes, self._locks, moved)
-        steps = all_steps(of_cameras, settings, self._shown, self.died)
+        steps = all_steps(of_cameras, settings, self._shown, self.on_thread_died)
         self.wizard = Wizard(
             self._cameras.hub,
             steps if step is None else only(steps, step),
             self._cameras.statuses,
             state_dir,
             cache_dir,
-            self.died,
+            self.on_thread_died,
             scene=scene,
             first=step or StepName.CAMERAS,
             draft=draft,
             on_saved=self._saved.set,
-            # one step done again is not worth an offer: it would be of the whole setup
+            # a single step is not worth an offer, which would be of the whole setup
             keeper=SetupKeeper(state_dir, draft, self._locks) if step is None else None,
         )
 
@@ -76,13 +76,13 @@ class OwnHost:
         self.wizard.start()
 
     def stop(self) -> None:
-        """End: the setup first, so that the cameras get back what they held before."""
+        """End: the setup first, so that it restores the cameras' controls."""
         self.wizard.stop()
         self._locks.restore()
         self._cameras.stop()
 
-    def died(self, error: BaseException) -> None:
-        """A thread ended by what nobody expected: so must the process."""
+    def on_thread_died(self, error: BaseException) -> None:
+        """A thread raised an unexpected exception, so the process must end."""
         self._death = self._death or error
         self._over.set()
 
@@ -91,8 +91,8 @@ class OwnHost:
         self._over.set()
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether it is over; what hangs is set right, so call it several times a second. Raises the MocapdError that
-        killed a thread, ThreadDiedError for anything else."""
+        """Whether it is over; also recovers stalled cameras, so call it several times a second. Raises the MocapdError
+        that killed a thread, ThreadDiedError for anything else."""
         over = self._over.wait(timeout_s)
         self._cameras.watch()
         if isinstance(self._death, MocapdError):
@@ -102,8 +102,8 @@ class OwnHost:
         return over
 
     @property
-    def saved(self) -> bool:
-        """Whether the draft has been written."""
+    def is_saved(self) -> bool:
+        """Whether the draft is saved."""
         return self._saved.is_set()
 
     # -- Host ------------------------------------------------------------------------------------
@@ -119,7 +119,7 @@ class OwnHost:
         return self.wizard.draft.rig
 
     def known(self) -> RecordedKnown:
-        """See web.host.Host: nothing is saved yet."""
+        """See web.host.Host: there is no saved calibration yet."""
         return RecordedKnown()
 
     def setup(self) -> Wizard:
@@ -132,7 +132,7 @@ class OwnHost:
 
     @property
     def recordings(self) -> None:
-        """See Host: what is tracked here is a check of a few seconds."""
+        """See Host: a check of a few seconds is not recorded."""
         return
 
     def recenter(self) -> None:

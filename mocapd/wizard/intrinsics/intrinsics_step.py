@@ -1,4 +1,4 @@
-"""The step Lens: the board is shown to every camera, whose intrinsics are solved as soon as enough was seen.
+"""The step Lens: collects pictures of the board in every camera, and solves its intrinsics when there are enough.
 
 Its commands are `intrinsics_verbs.LENS`.
 """
@@ -38,11 +38,11 @@ from mocapd.wizard.intrinsics.saved_intrinsics import (
 from mocapd.wizard.step import Scene, Shape, StepState, StepView, Tell
 from mocapd.wizard.step_names import StepName
 
-_SEEN_NS = 500_000_000  # how long a camera that saw the board counts as the one that it is shown to
+_SEEN_NS = 500_000_000  # how long a camera counts as the user's target after a sighting
 
 
 class IntrinsicsStep:
-    """Collects pictures of the board, of all cameras at once, and solves the intrinsics of one after the other."""
+    """Collects pictures of the board in all cameras at once, and solves the intrinsics one after the other."""
 
     name = StepName.LENS
     verbs = LENS
@@ -96,9 +96,9 @@ class IntrinsicsStep:
             case UseSaved(camera=None):
                 self._use_saved(list(self._cameras.values()))
             case UseSaved(camera=str(camera)):
-                self._use_saved([self._named(camera)])
+                self._use_saved([self._require_camera(camera)])
             case MeasureLens():
-                self._named(command.camera).use(None)
+                self._require_camera(command.camera).use(None)
             case Finish():
                 self._finish()
 
@@ -113,20 +113,20 @@ class IntrinsicsStep:
         cameras = self._cameras.values()
         state = StepState.DONE if self._done() else StepState.WAITING
         if state is StepState.WAITING and any(
-            one.refusal and not one.intrinsics for one in cameras
+            camera.refusal and not camera.intrinsics for camera in cameras
         ):
             state = StepState.FAILED
         return StepView(
             state,
             self._sentence(),
-            float(np.mean([one.progress() for one in cameras])),
+            float(np.mean([camera.progress() for camera in cameras])),
             self._problems(),
             self._overlays(),
             {
                 "board": form_of(self._spec),
                 "note": self._note,
-                "cameras": {id_: one.details() for id_, one in self._cameras.items()},
-                "finishable": all(one.by_hand() is not None for one in cameras),
+                "cameras": {id_: camera.details() for id_, camera in self._cameras.items()},
+                "finishable": all(camera.by_hand() is not None for camera in cameras),
                 "solving": self._solving.name if self._solving is not None else None,
             },
         )
@@ -134,24 +134,26 @@ class IntrinsicsStep:
     # -- collecting ------------------------------------------------------------------------------
 
     def _begin(self) -> None:
-        """Collect from nothing."""
+        """Discard all pictures."""
         board_m = corners_m(self._spec)
         cameras = self._context.draft.cameras
         self._cameras = {
-            one.id: CameraIntrinsics(one, PickedViews(one.size_px, board_m)) for one in cameras
+            camera.id: CameraIntrinsics(camera, PickedViews(camera.size_px, board_m))
+            for camera in cameras
         }
-        self._sightings = BoardSightings({one.id: one.size_px for one in cameras}, board_m)
-        self._round += 1  # a job of the round before is not listened to
+        self._sightings = BoardSightings({camera.id: camera.size_px for camera in cameras}, board_m)
+        self._round += 1  # ignores the result of a job of an earlier round
 
     def _take(self, look: Look, now_ns: int) -> None:
         self._advice.take(look)
         together = self._sightings.offer(look)
-        for id_, seen in look.seen.items():
+        for id_, observation in look.observations.items():
             one = self._cameras[id_]
-            if one.intrinsics is not None or not one.picked.offer(seen.view, seen.motion_px):
+            view = observation.view
+            if one.intrinsics is not None or not one.picked.offer(view, observation.motion_px):
                 continue
-            if not (together and self._sightings.still(id_, seen)):
-                one.picked.views[-1] = self._sightings.add_alone(id_, seen.view)
+            if not (together and self._sightings.still(id_, observation)):
+                one.picked.views[-1] = self._sightings.add_alone(id_, view)
         wanted = {
             id_: frame for id_, frame in look.frames.items() if not self._cameras[id_].intrinsics
         }
@@ -168,12 +170,12 @@ class IntrinsicsStep:
             return
         old, self._spec, self._note = self._spec, spec, ""
         if not same_print(old, spec):
-            offers = {id_: (one.offered, one.taken) for id_, one in self._cameras.items()}
+            offers = {id_: (camera.offered, camera.taken) for id_, camera in self._cameras.items()}
             self._begin()
             for id_, (offered, taken) in offers.items():
                 self._cameras[id_].offered = offered
                 self._cameras[id_].use(taken)
-        # otherwise corners stay where they are, and intrinsics do not mind the scale of the board
+        # otherwise corners stay valid, and intrinsics do not depend on the scale of the board
         self._watch.change(spec)
         self._advice.forget()
         self._write_when_done()
@@ -181,7 +183,7 @@ class IntrinsicsStep:
     # -- solving ---------------------------------------------------------------------------------
 
     def _solve_next(self) -> None:
-        due = [one for one in self._cameras.values() if one.due()]
+        due = [camera for camera in self._cameras.values() if camera.due()]
         if not due:
             return
         one = max(due, key=lambda camera: camera.picked.progress())
@@ -189,8 +191,8 @@ class IntrinsicsStep:
         views = tuple(one.picked.views)
         self._solving = one
 
-        def job(tell: Tell) -> Intrinsics:
-            tell(f"the lens of {one.name}", 0.0)
+        def job(report: Tell) -> Intrinsics:
+            report(f"the lens of {one.name}", 0.0)
             return one.solve(views, board_m)
 
         def done(intrinsics: Intrinsics) -> None:
@@ -202,17 +204,17 @@ class IntrinsicsStep:
         self._context.start_job(job, done)
 
     def _finish(self) -> None:
-        for one in self._cameras.values():
-            if one.by_hand() is None:
+        for camera in self._cameras.values():
+            if camera.by_hand() is None:
                 raise InputError(
-                    "its lens is not known well enough yet", one.name, "show it the board on"
+                    "its lens is not known well enough yet", camera.name, "show it the board on"
                 )
         for one in self._cameras.values():
             one.intrinsics = one.by_hand()
         self._write_when_done()
 
     def _done(self) -> bool:
-        return all(one.intrinsics is not None for one in self._cameras.values())
+        return all(camera.intrinsics is not None for camera in self._cameras.values())
 
     def _write_when_done(self) -> None:
         if not self._done():
@@ -220,9 +222,13 @@ class IntrinsicsStep:
         draft = self._context.draft
         earlier = draft.board_views if draft.board and same_print(draft.board, self._spec) else {}
         of_draft = {
-            id_ for id_, one in self._cameras.items() if one.taken and not one.taken.from_file
+            id_
+            for id_, camera in self._cameras.items()
+            if camera.taken and not camera.taken.from_file
         }
-        saved = {id_ for id_, one in self._cameras.items() if one.taken and one.taken.from_file}
+        saved = {
+            id_ for id_, camera in self._cameras.items() if camera.taken and camera.taken.from_file
+        }
         self._context.draft = replace(
             draft,
             board=self._spec,
@@ -231,82 +237,84 @@ class IntrinsicsStep:
                 for id_, own in self._sightings.views.items()
             },
             intrinsics={
-                id_: one.intrinsics
-                for id_, one in self._cameras.items()
-                if one.intrinsics is not None
+                id_: camera.intrinsics
+                for id_, camera in self._cameras.items()
+                if camera.intrinsics is not None
             },
             intrinsics_saved=frozenset(saved | (draft.intrinsics_saved & of_draft)),
         )
 
-    # -- intrinsics of before --------------------------------------------------------------------
+    # -- earlier intrinsics ----------------------------------------------------------------------
 
     def _offer(self) -> None:
-        """Intrinsics of this setup, else of the file of earlier ones."""
+        """Offer intrinsics of this setup, or else of the file of earlier ones."""
         saved: tuple[SavedIntrinsics, ...] = ()
         try:
             saved = read_intrinsics(self._context.state_dir)
         except ConfigError as error:
             self._damaged = (Problem.of(error),)
-        for id_, one in self._cameras.items():
+        for id_, camera in self._cameras.items():
             intrinsics = self._context.draft.intrinsics.get(id_)
-            found = find_saved_intrinsics(one.camera, saved)
-            if intrinsics is not None and intrinsics.size_px == one.camera.size_px:
-                one.offered = IntrinsicsOffer(intrinsics, "", from_file=False)
-            elif found is not None:
-                one.offered = IntrinsicsOffer(
-                    found.intrinsics(), f"{found.when:%Y-%m-%d}", from_file=True
+            stored = find_saved_intrinsics(camera.camera, saved)
+            if intrinsics is not None and intrinsics.size_px == camera.camera.size_px:
+                camera.offered = IntrinsicsOffer(intrinsics, "", from_file=False)
+            elif stored is not None:
+                camera.offered = IntrinsicsOffer(
+                    stored.intrinsics(), f"{stored.when:%Y-%m-%d}", from_file=True
                 )
 
     def _use_saved(self, cameras: Sequence[CameraIntrinsics]) -> None:
-        offered = [one for one in cameras if one.offered is not None]
+        offered = [camera for camera in cameras if camera.offered is not None]
         if not offered:
-            raise InputError("no lens of before is known", cameras[0].name, "show it the board")
+            raise InputError("there is no earlier lens", cameras[0].name, "show it the board")
         for one in offered:
             one.use(one.offered)
         self._write_when_done()
 
-    def _named(self, camera: str) -> CameraIntrinsics:
+    def _require_camera(self, camera: str) -> CameraIntrinsics:
         if camera not in self._cameras:
             raise InputError(f"no camera {brief(camera)}", "lens", "reload the page")
         return self._cameras[camera]
 
-    # -- what is told ----------------------------------------------------------------------------
+    # -- messages --------------------------------------------------------------------------------
 
     def _sentence(self) -> str:
         if self._done():
             return "All lenses are known. Go on to the room."
-        left = {id_: one for id_, one in self._cameras.items() if one.intrinsics is None}
-        seen = {
-            id_: seen
-            for id_, seen in self._watch.newest.items()
-            if id_ in left and self._now_ns - seen.t_ns <= _SEEN_NS
+        left = {id_: camera for id_, camera in self._cameras.items() if camera.intrinsics is None}
+        newest = {
+            id_: observation
+            for id_, observation in self._watch.newest.items()
+            if id_ in left and self._now_ns - observation.t_ns <= _SEEN_NS
         }
-        if not seen:
-            if not any(one.picked.views for one in left.values()):
+        if not newest:
+            if not any(camera.picked.views for camera in left.values()):
                 return (
                     "Show the board to the cameras, so near that it fills a third of the picture."
                 )
-            # of those left, the one that is nearest to its end
-            return max(left.values(), key=lambda one: one.picked.progress()).sentence()
-        one = max((left[id_] for id_ in seen), key=lambda one: one.picked.progress())
-        if all(not left[id_].picked.still(at.motion_px) for id_, at in seen.items()):
+            # the unfinished camera with most progress
+            return max(left.values(), key=lambda camera: camera.picked.progress()).sentence()
+        camera = max((left[id_] for id_ in newest), key=lambda camera: camera.picked.progress())
+        if all(not left[id_].picked.still(at.motion_px) for id_, at in newest.items()):
             return "Hold the board still for a moment."
-        return one.sentence()
+        return camera.sentence()
 
     def _overlays(self) -> dict[str, tuple[Shape, ...]]:
         if self._done():
             return {}
         corners = self._watch.shapes(self._now_ns, self._sightings.still_px())
         return {
-            id_: (*(one.cells() if one.intrinsics is None else ()), *corners.get(id_, ()))
-            for id_, one in self._cameras.items()
+            id_: (*(camera.cells() if camera.intrinsics is None else ()), *corners.get(id_, ()))
+            for id_, camera in self._cameras.items()
         }
 
     def _problems(self) -> tuple[Problem, ...]:
-        left = {id_: one.intrinsics is None for id_, one in self._cameras.items()}
+        left = {id_: camera.intrinsics is None for id_, camera in self._cameras.items()}
         stopped = stopped_cameras(self._context, self._cameras)
         refused = tuple(
-            one.refusal for one in self._cameras.values() if one.refusal and not one.intrinsics
+            camera.refusal
+            for camera in self._cameras.values()
+            if camera.refusal and not camera.intrinsics
         )
         advice = () if self._done() else self._advice.problems(self._now_ns, left)
         return (*self._damaged, *stopped, *refused, *advice)

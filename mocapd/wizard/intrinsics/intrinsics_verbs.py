@@ -1,4 +1,4 @@
-"""What a person can say in the step Lens: each verb with its arguments and their ranges."""
+"""Commands of the step Lens, with their arguments and ranges."""
 
 from typing import Annotated
 
@@ -19,7 +19,7 @@ Millimetres = Annotated[float, msgspec.Meta(ge=_SMALLEST_MM, lt=_LARGEST_MM)]
 
 
 class Board(Command, frozen=True):
-    """What is printed on it; None: as before."""
+    """The printed pattern; None leaves a value unchanged."""
 
     refused = "this board cannot be"
     fix = (
@@ -38,7 +38,7 @@ class Board(Command, frozen=True):
 
 
 class Ruler(Command, frozen=True):
-    """How long the printed 100 mm are; farther off, something else was measured."""
+    """Measured length of the printed 100 mm; the range excludes other rulers."""
 
     refused = "this cannot be the ruler"
     fix = "measure the line that should be 100 mm long, in millimetres"
@@ -46,17 +46,17 @@ class Ruler(Command, frozen=True):
 
 
 class UseSaved(Command, frozen=True):
-    """The lens of before; None: all of them."""
+    """Use an earlier lens; None: all of them."""
 
     camera: str | None = None
 
 
 class MeasureLens(OfCamera, frozen=True):
-    """Not the saved lens but a new one."""
+    """Measure a new lens instead of the saved one."""
 
 
 class Finish(Command, frozen=True):
-    """With the lenses as good as they are."""
+    """Accept the present lenses."""
 
 
 LENS: Verbs = {

@@ -1,4 +1,4 @@
-"""One camera in the step Lens: its pictures of the board, its intrinsics, and what is said of it."""
+"""One camera in the step Lens: its pictures of the board, its intrinsics, and its messages."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -14,29 +14,29 @@ from mocapd.wizard.step import Json, Shape
 
 _LIMITS = IntrinsicsLimits(focal_deviation=0.05)
 _CHOICE = Choice(most=24)
-_FIRST_TRY = 10  # pictures, whatever they lack: a refusal then says what
-_NEXT_TRY = 4  # pictures more
+_FIRST_TRY = 10  # pictures, even if they lack something: the error then says what
+_NEXT_TRY = 4  # more pictures
 _ROWS = ("upper", "middle", "lower")
 _COLUMNS = ("left", "middle", "right")
 
 
 @dataclass(frozen=True, slots=True)
 class IntrinsicsGoal:
-    """When intrinsics end the collecting, and when a person may end it by hand.
+    """Limits for ending the collection automatically, and by the user.
 
-    held_out: error in parts of the picture's width; focal_deviation: of the focal length, of itself.
+    held_out: error in parts of the picture's width; focal_deviation: of the focal length, relative.
     """
 
     held_out: float = 1.0 / 640
     focal_deviation: float = 0.005
     covered: float = 0.5
-    patience: int = 24  # pictures, after which twice the deviation is good too
+    patience: int = 24  # pictures, after which twice the deviation is acceptable
     by_hand: float = 0.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class IntrinsicsOffer:
-    """Intrinsics of before. when: the day they were measured, "" in this setup; from_file: of another setup."""
+    """Earlier intrinsics. when: day of measurement, "" in this setup; from_file: of another setup."""
 
     intrinsics: Intrinsics
     when: str
@@ -45,59 +45,59 @@ class IntrinsicsOffer:
 
 @dataclass(slots=True, eq=False)
 class CameraIntrinsics:
-    """What is known of one camera so far."""
+    """State of one camera."""
 
     camera: DraftCamera
     picked: PickedViews
     offered: IntrinsicsOffer | None = None
-    taken: IntrinsicsOffer | None = None  # the one that was offered, when the person took it
-    intrinsics: Intrinsics | None = None  # that the step ends with
-    usable: Intrinsics | None = None  # the newest one that is not good enough yet
+    taken: IntrinsicsOffer | None = None  # the offer, if the user accepted it
+    intrinsics: Intrinsics | None = None  # the result of the step
+    usable: Intrinsics | None = None  # the newest solution below the goal
     refusal: Problem | None = None
-    tried: int = 0  # pictures at the last try
+    tried: int = 0  # pictures at the last attempt
     good: IntrinsicsGoal = field(default_factory=IntrinsicsGoal)
 
     @property
     def name(self) -> str:
-        """What the person calls it."""
+        """The user's name for it."""
         return self.camera.label or self.camera.id
 
     def due(self) -> bool:
-        """Whether there are enough new pictures to try."""
+        """Whether there are enough new pictures for an attempt."""
         count = len(self.picked.views)
         if self.intrinsics is not None:
             return False
         return count >= (self.tried + _NEXT_TRY if self.tried else _FIRST_TRY)
 
     def solve(self, views: Sequence[BoardView], board_m: Floats) -> Intrinsics:
-        """For a job. Raises ConfigError that says what is wrong with the pictures."""
+        """For a job. Raises ConfigError that names the problem of the pictures."""
         chosen = choose_views(views, self.camera.size_px, _CHOICE)
         return solve_intrinsics(chosen, board_m, self.camera.size_px, self.name, _LIMITS)
 
     def take(self, intrinsics: Intrinsics, tried: int) -> None:
-        """The job's intrinsics: good enough to end with, or the best so far."""
+        """Take the job's intrinsics: the result if good enough, or the best so far."""
         self.tried, self.refusal, self.usable = tried, None, intrinsics
         good = self.good
         deviation = good.focal_deviation * (2.0 if tried >= good.patience else 1.0)
         if (
             intrinsics.held_out_px <= good.held_out * self.camera.size_px[0]
             and intrinsics.focal_deviation <= deviation
-            and self.picked.covered >= good.covered
+            and self.picked.covered_share >= good.covered
         ):
             self.intrinsics = intrinsics
 
     def refuse(self, error: MocapdError, tried: int) -> None:
-        """The job found that these pictures give none."""
+        """Take the job's error."""
         self.tried, self.refusal = tried, Problem.of(error)
 
     def use(self, offered: IntrinsicsOffer | None) -> None:
-        """Those of before; None: new ones are measured."""
+        """Use earlier intrinsics; None: measure new ones."""
         self.taken = offered
         self.intrinsics = None if offered is None else offered.intrinsics
         self.refusal = None
 
     def by_hand(self) -> Intrinsics | None:
-        """The intrinsics that a person may end with now."""
+        """The intrinsics that the user may accept now."""
         if self.intrinsics is not None:
             return self.intrinsics
         if self.usable is not None and self.usable.focal_deviation <= self.good.by_hand:
@@ -109,7 +109,7 @@ class CameraIntrinsics:
         return 1.0 if self.intrinsics is not None else 0.95 * self.picked.progress()
 
     def sentence(self) -> str:
-        """What to show this camera next."""
+        """The next instruction for this camera."""
         lack = self.picked.lack()
         if lack is Lack.SIDEWAYS:
             return f"{self.name}: turn the board's left or right edge towards the camera."
@@ -119,7 +119,7 @@ class CameraIntrinsics:
             row, column = self.picked.emptiest()
             where = f"{_ROWS[row]} {_COLUMNS[column]}".replace("middle middle", "middle")
             return f"{self.name}: hold the board in the {where} of the picture."
-        if self.usable is not None and self.picked.covered >= self.good.covered:
+        if self.usable is not None and self.picked.covered_share >= self.good.covered:
             return f"{self.name}: show the board nearer, and tilted more."
         return (
             f"Show the board to {self.name}: here and there, tilted, still for a moment each time."
@@ -130,7 +130,7 @@ class CameraIntrinsics:
         width, height = self.camera.size_px
         across, down = width / GRID[0], height / GRID[1]
         shapes = []
-        for (row, column), count in _counted(self.picked):
+        for (row, column), count in _coverage_counts(self.picked):
             x, y = column * across - 0.5, row * down - 0.5
             at = ((x, y), (x + across, y), (x + across, y + down), (x, y + down))
             level = 1 + (count > 2) + (count > 5)
@@ -139,10 +139,10 @@ class CameraIntrinsics:
 
     def details(self) -> dict[str, Json]:
         """For the page."""
-        told: dict[str, Json] = {
+        details: dict[str, Json] = {
             "name": self.name,
             "views": len(self.picked.views),
-            "covered": round(self.picked.covered, 3),
+            "covered": round(self.picked.covered_share, 3),
             "coverage": self.picked.counts.tolist(),
             "progress": round(self.progress(), 3),
             "lens": _figures(self.intrinsics) if self.intrinsics is not None else None,
@@ -151,11 +151,11 @@ class CameraIntrinsics:
             "offered": None,
         }
         if self.offered is not None:
-            told["offered"] = {**_figures(self.offered.intrinsics), "when": self.offered.when}
-        return told
+            details["offered"] = {**_figures(self.offered.intrinsics), "when": self.offered.when}
+        return details
 
 
-def _counted(picked: PickedViews) -> list[tuple[tuple[int, int], int]]:
+def _coverage_counts(picked: PickedViews) -> list[tuple[tuple[int, int], int]]:
     rows, columns = picked.counts.shape
     return [
         ((row, column), int(picked.counts[row, column]))
@@ -167,15 +167,15 @@ def _counted(picked: PickedViews) -> list[tuple[tuple[int, int], int]]:
 
 def _figures(intrinsics: Intrinsics) -> dict[str, Json]:
     return {
-        "rms_px": _rounded(intrinsics.rms_px, 3),
-        "held_out_px": _rounded(intrinsics.held_out_px, 3),
-        "focal_percent": _rounded(100.0 * intrinsics.focal_deviation, 2),
-        "focal_px": _rounded(float(intrinsics.K[0, 0]), 1),
+        "rms_px": _round(intrinsics.rms_px, 3),
+        "held_out_px": _round(intrinsics.held_out_px, 3),
+        "focal_percent": _round(100.0 * intrinsics.focal_deviation, 2),
+        "focal_px": _round(float(intrinsics.K[0, 0]), 1),
         "views": len(intrinsics.views),
         "thrown_out": len(intrinsics.thrown_out),
     }
 
 
-def _rounded(value: float, digits: int) -> float | None:
+def _round(value: float, digits: int) -> float | None:
     """None for NaN, which JSON has not."""
     return round(float(value), digits) if value == value else None

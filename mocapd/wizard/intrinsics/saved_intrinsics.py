@@ -23,11 +23,11 @@ FILE_NAME = "lenses.toml"
 SCHEMA = 1
 _HEADER = """\
 # Lenses that mocapd's setup measured, offered when a camera of the same vid:pid:serial is used in the
-# same mode again. K and dist (k1 k2 p1 p2 k3) are in pixels. A part taken out is measured anew.
+# same mode again. K and dist (k1 k2 p1 p2 k3) are in pixels. Without a part of it, that is measured again.
 
 """
 _log = logging.getLogger(__name__)
-_FIX = "take the file away: lenses are measured anew"
+_FIX = "take the file away: lenses are measured again"
 
 _MOST_BYTES = 256_000  # a lens takes 0.5 kB
 
@@ -40,7 +40,7 @@ Positive = Annotated[float, msgspec.Meta(gt=0.0, le=1e9)]
 
 
 class SavedIntrinsics(msgspec.Struct, frozen=True, kw_only=True):
-    """camera: vid:pid:serial; focus: what its focus was locked to; when: UTC."""
+    """camera: vid:pid:serial; focus: its locked focus; when: UTC."""
 
     camera: str
     size_px: tuple[Pixels, Pixels]
@@ -59,7 +59,7 @@ class SavedIntrinsics(msgspec.Struct, frozen=True, kw_only=True):
             raise ValueError("K is not [fx 0 cx, 0 fy cy, 0 0 1]")  # msgspec names the place
 
     def intrinsics(self) -> Intrinsics:
-        """As the step Lens finds them."""
+        """In the form of the step Lens."""
         return Intrinsics(
             self.size_px,
             np.array(self.K),
@@ -79,13 +79,13 @@ class _File(msgspec.Struct, frozen=True):
 
 
 def key_of(camera: DraftCamera) -> str | None:
-    """vid:pid:serial; None for a camera that has none, whose intrinsics cannot be known again."""
+    """vid:pid:serial; None for a camera without one, which cannot be recognised."""
     identity = identity_of(camera.source)
     return ":".join(identity.model) if identity is not None else None
 
 
 def read_intrinsics(state_dir: Path) -> tuple[SavedIntrinsics, ...]:
-    """All that were saved; none without the file. Raises ConfigError when it is damaged."""
+    """All saved ones; empty without the file. Raises ConfigError for a damaged one."""
     path = state_dir / FILE_NAME
     try:
         file: _File = convert(parse_toml(read_text(path, _MOST_BYTES)), _File)
@@ -104,25 +104,25 @@ def read_intrinsics(state_dir: Path) -> tuple[SavedIntrinsics, ...]:
 def find_saved_intrinsics(
     camera: DraftCamera, saved: tuple[SavedIntrinsics, ...]
 ) -> SavedIntrinsics | None:
-    """The one measured of this camera in this mode, with the same focus where that is known."""
+    """The intrinsics of this camera in this mode, with the same focus where both are recorded."""
     key = key_of(camera)
-    for one in saved:
-        same = one.camera == key and one.size_px == camera.size_px
+    for record in saved:
+        same = record.camera == key and record.size_px == camera.size_px
         if same and (
-            None in (one.focus, camera.controls.focus) or one.focus == camera.controls.focus
+            None in (record.focus, camera.controls.focus) or record.focus == camera.controls.focus
         ):
-            return one
+            return record
     return None
 
 
 def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
-    """Add the draft's new intrinsics; those of the same camera and mode are replaced, others stay. A file that cannot
-    be read is set aside.
+    """Add the draft's new intrinsics; they replace those of the same camera and mode. An unreadable file goes into
+    quarantine.
 
     For when the calibration is saved. Raises CannotCreateError.
     """
     new = [
-        _saved(key, camera, draft.intrinsics[camera.id], when)
+        _record_of(key, camera, draft.intrinsics[camera.id], when)
         for camera in draft.cameras
         if (key := key_of(camera)) is not None
         and camera.id in draft.intrinsics
@@ -130,12 +130,12 @@ def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
     ]
     if not new:
         return
-    made = {(one.camera, one.size_px) for one in new}
+    made = {(record.camera, record.size_px) for record in new}
     path = state_dir / FILE_NAME
     try:
         before = _readable(path)
-        kept = [one for one in before if (one.camera, one.size_px) not in made]
-        data = {"schema": SCHEMA, "lens": [_table(one) for one in (*kept, *new)]}
+        rest = [record for record in before if (record.camera, record.size_px) not in made]
+        data = {"schema": SCHEMA, "lens": [_table(record) for record in (*rest, *new)]}
         state_dir.mkdir(parents=True, exist_ok=True)
         with whole_file(path) as partial:
             partial.write_text(_HEADER + toml_text(data), encoding="utf-8")
@@ -146,16 +146,16 @@ def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
 
 
 def _readable(path: Path) -> tuple[SavedIntrinsics, ...]:
-    """Those of before; none when they cannot be read. Raises OSError."""
+    """Earlier ones; empty when they cannot be read. Raises OSError."""
     try:
         return read_intrinsics(path.parent)
     except ConfigError as error:
-        aside = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
-        _log.warning("%s %s; it is kept as %s", path, error.what, aside.name)
+        moved_to = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
+        _log.warning("%s %s; it is now %s", path, error.what, moved_to.name)
         return ()
 
 
-def _saved(
+def _record_of(
     key: str, camera: DraftCamera, intrinsics: Intrinsics, when: datetime
 ) -> SavedIntrinsics:
     K: tuple[Row3, Row3, Row3] = msgspec.convert(

@@ -1,12 +1,12 @@
 """Looks in vain end a step; a slow machine does not."""
 
-from mocapd.wizard.patience import Patience
+from mocapd.wizard.visibility_timeout import VisibilityTimeout
 
 
 def looks_until_ended(took_s: float) -> int:
-    patience, looks = Patience(4.0), 0
-    while not patience.ended:
-        patience.looked(took_s, seen=False)
+    timeout, looks = VisibilityTimeout(4.0), 0
+    while not timeout.is_over:
+        timeout.update(took_s, visible=False)
         looks += 1
     return looks
 
@@ -20,7 +20,7 @@ def test_on_a_slow_machine_a_wearer_gets_as_many_looks() -> None:
 
 
 def test_what_is_seen_costs_nothing() -> None:
-    patience = Patience(0.1)
+    timeout = VisibilityTimeout(0.1)
     for _ in range(1000):
-        patience.looked(1.0, seen=True)
-    assert not patience.ended
+        timeout.update(1.0, visible=True)
+    assert not timeout.is_over

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.extrinsics.seen_floor import rig_advice, seen_floor
+from mocapd.calibrate.extrinsics.visible_floor import rig_advice, visible_floor
 from mocapd.geometry.camera_model import project
 from mocapd.types import Rig
 from mocapd.wizard.extrinsics.rig_plan import area_shapes, plan_of_cameras
@@ -23,7 +23,7 @@ def pair(apart_m: float, away_m: float) -> Rig:
 
 def test_a_person_in_a_cell_is_in_both_pictures_from_foot_to_head() -> None:
     rig = pair(3.0, 3.0)
-    seen = seen_floor(rig)
+    seen = visible_floor(rig)
     assert seen.area_m2 > 2.0
     assert seen.baseline_m == pytest.approx(3.0)
     for x_m, z_m in seen.cells_m[::7]:
@@ -35,13 +35,13 @@ def test_a_person_in_a_cell_is_in_both_pictures_from_foot_to_head() -> None:
 
 
 def test_cameras_that_are_too_near_are_told_to_move_back() -> None:
-    (told,) = rig_advice(seen_floor(pair(1.2, 1.2)), 2)
+    (told,) = rig_advice(visible_floor(pair(1.2, 1.2)), 2)
     assert told.where == "the play area"
     assert "2.5 to 3.5 m" in told.fix
 
 
 def test_cameras_side_by_side_are_told_to_move_apart() -> None:
-    (told,) = rig_advice(seen_floor(pair(0.4, 3.2)), 2)
+    (told,) = rig_advice(visible_floor(pair(0.4, 3.2)), 2)
     assert told.where == "depth"
     assert "0.4 m apart" in told.what
 
@@ -57,7 +57,7 @@ def test_the_page_gets_the_figures_in_metres() -> None:
 
 def test_the_area_is_drawn_into_each_picture_with_its_size() -> None:
     rig = pair(3.0, 3.0)
-    shapes, seen = area_shapes(rig), seen_floor(rig)
+    shapes, seen = area_shapes(rig), visible_floor(rig)
     assert set(shapes) == {"left", "right"}
     for camera in rig.cameras:
         outline, text = shapes[camera.name]

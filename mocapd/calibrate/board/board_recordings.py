@@ -1,4 +1,4 @@
-"""A folder of recordings of the board: a video or a folder of pictures per camera, named by its stem."""
+"""A folder of recordings of the board: a video or a folder of pictures per camera, named like the camera."""
 
 import itertools
 import re
@@ -24,14 +24,14 @@ _VIDEOS = {
     *(".ts", ".mts", ".m2ts", ".3gp", ".flv", ".ogv"),
 }
 _PICTURES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
-# How those begin whose headers are OpenCV's to measure, against the limit that `environment` sets.
 _USUAL_HZ = 30.0  # of numbered pictures
+# magic numbers of formats whose size OpenCV checks, against the limit that `environment` sets
 _OTHERS = (b"BM", b"II*\0", b"MM\0*", b"RIFF")
 
 
 @dataclass(frozen=True, slots=True)
 class RecordingTimes:
-    """stamps_s[index] [s] from the start of the file, and the usual time between frames. Of pictures with numbers in
+    """stamps_s[index] [s] from the start of the file, and the usual time between frames. For pictures with numbers in
     their names the time is that number at a usual rate."""
 
     stamps_s: Mapping[int, float]
@@ -40,7 +40,7 @@ class RecordingTimes:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """One camera's video or folder of pictures; `frames`: how many, 0 where a video does not tell."""
+    """One camera's video or folder of pictures; `frames`: how many, 0 where a video does not say."""
 
     name: str
     path: Path
@@ -48,21 +48,21 @@ class Recording:
     size_px: tuple[int, int]
 
     def stamps(self) -> RecordingTimes:
-        """When its frames were taken, by the file's own stamps. Raises InputError."""
+        """Times of the frames by the file's own stamps. Raises InputError."""
         if self.path.is_dir():
-            indices = [index for index, _ in numbered(self.path)]
+            indices = [index for index, _ in pictures_by_index(self.path)]
             return RecordingTimes({i: i / _USUAL_HZ for i in indices}, 1.0 / _USUAL_HZ)
         times = video_times(self.path)
         stamps_s = dict(enumerate((times.start_s + times.times_s).tolist()))
         return RecordingTimes(stamps_s, 1.0 / times.rate_hz)
 
     def pictures(self, stride: int = 1) -> Iterator[tuple[int, Bytes]]:
-        """Index and pixels of every `stride`-th index: frames as they come, pictures by the number in their name.
+        """Index and pixels of every `stride`-th index: frames in order, pictures by the number in their name.
 
         Raises InputError for a picture that is damaged or of another size.
         """
         if self.path.is_dir():
-            for index, path in numbered(self.path):
+            for index, path in pictures_by_index(self.path):
                 if index % stride == 0:
                     yield index, self._read(path)
             return
@@ -112,7 +112,7 @@ def _decode_other(data: bytes) -> Bytes:
     return np.asarray(pixels, dtype=np.uint8)
 
 
-def numbered(folder: Path) -> list[tuple[int, Path]]:
+def pictures_by_index(folder: Path) -> list[tuple[int, Path]]:
     """The pictures of a folder by index: the last number in their names, else their order."""
     paths = [path for path in shown_in(folder) if path.suffix.lower() in _PICTURES]
     numbers = [re.findall(r"\d+", path.stem) for path in paths]
@@ -124,24 +124,24 @@ def numbered(folder: Path) -> list[tuple[int, Path]]:
 
 
 def find_recordings(folder: Path) -> tuple[Recording, ...]:
-    """Every camera of the folder, by name. Raises InputError when there is none."""
+    """Every camera of the folder, by name. Raises InputError for none, or for two of one name."""
     if not folder.is_dir():
         raise InputError("no such folder", str(folder), "check the path")
-    found = []
-    passed_over = []
+    recordings = []
+    ignored = []
     for path in shown_in(folder):
-        if pictures := numbered(path):
+        if pictures := pictures_by_index(path):
             shape = read_picture(pictures[0][1]).shape
-            found.append(Recording(path.name, path, len(pictures), (shape[1], shape[0])))
+            recordings.append(Recording(path.name, path, len(pictures), (shape[1], shape[0])))
         elif path.suffix.lower() in _VIDEOS:
             info = probe_video(path)
-            found.append(Recording(path.stem, path, info.frames, info.size_px))
+            recordings.append(Recording(path.stem, path, info.frames, info.size_px))
         else:
-            passed_over.append(path.name)
-    names = [one.name for one in found]
-    if not found or len(set(names)) < len(names):
+            ignored.append(path.name)
+    names = [recording.name for recording in recordings]
+    if not recordings or len(set(names)) < len(names):
         twice = sorted({name for name in names if names.count(name) > 1})
-        others = f" that can be read, but {', '.join(passed_over)[:200]}" if passed_over else ""
+        others = f" that can be read, but {', '.join(ignored)[:200]}" if ignored else ""
         raise InputError(
             f"two recordings of one camera: {', '.join(twice)}"
             if twice
@@ -149,4 +149,4 @@ def find_recordings(folder: Path) -> tuple[Recording, ...]:
             str(folder),
             "put one video, or one folder of pictures, per camera there, named as the camera",
         )
-    return tuple(found)
+    return tuple(recordings)
