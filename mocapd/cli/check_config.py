@@ -62,10 +62,10 @@ def _print_calibration(config: "Config") -> None:
         return
     tables, room = saved.tables, saved.tables.room
     assert room is not None  # one that is not placed is refused when it is read
-    told = [f"made {tables.made.when:%Y-%m-%d %H:%M} UTC by {tables.made.by}"]
-    told += [f"{room.rms_px:.2f} px"] if room.rms_px is not None else []
-    told += [f"{room.play_area_cm:.1f} cm"] if room.play_area_cm is not None else []
-    print(f"# calibration: {saved.path} ({', '.join(told)})")
+    details = [f"made {tables.made.when:%Y-%m-%d %H:%M} UTC by {tables.made.by}"]
+    details += [f"{room.rms_px:.2f} px"] if room.rms_px is not None else []
+    details += [f"{room.play_area_cm:.1f} cm"] if room.play_area_cm is not None else []
+    print(f"# calibration: {saved.path} ({', '.join(details)})")
     for camera in tables.camera:
         width, height = camera.size_px
         source = without_password(camera.source)

@@ -92,7 +92,7 @@ def evaluate_captures(
         cases = [open_case(folder, compare=True) for folder in captures]
         resources = cached(effective.cache_dir, progress)
         setting = runs.EvaluationSettings(
-            lambda known: ready_tracker(name, known, resources),
+            lambda calibration: ready_tracker(name, calibration, resources),
             effective.tracker.stature_m,
             joints.value,
             progress,

@@ -114,7 +114,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
                 early = EarlyStart(first.preparation, change, control.preparing)
                 hooks = (change, early, control, Supervision(notifier))
                 code = run_daemon(service, signals, hint, hooks, control.what_is_prepared)
-    except SystemExit as end:  # told to end while the first session was still prepared
+    except SystemExit as end:  # a signal ended it during the preparation of the first session
         code = end.code if isinstance(end.code, int) else 0
     finally:
         if page is not None:

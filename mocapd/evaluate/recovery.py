@@ -51,8 +51,8 @@ def recovery_frames(errors_m: Floats, limit_m: float = LIMIT_M, for_good: bool =
 
 
 def recovery(truth: Truth, track: RecordedTrack, joints: str = "upper") -> float | None:
-    """`recovery_frames` after the capture's change of light, or since nothing hides the person any more, whose
-    limit is 10 cm, and for good; None when its light is steady and nothing ever did."""
+    """`recovery_frames` after the capture's change of light, or after the end of its occlusion, with a limit of 10 cm to
+    the end; None for a capture with neither."""
     since_s = truth.light_change_s if truth.clear_s is None else truth.clear_s
     if since_s is None:
         return None

@@ -30,8 +30,8 @@ def run(
     method: str = "",
     keep_evidence: Callable[[Case], Container[int]] = _no_frames,
 ) -> list[CaptureResult]:
-    """One result per capture. `method` is a label for the progress; `keep_evidence` names the frames of a capture whose
-    evidence is kept."""
+    """One result per capture. `method`: a label for the progress; `keep_evidence`: the frames of a capture for which the
+    evidence is stored."""
     return [
         evaluate(
             case,

@@ -112,7 +112,7 @@ def joint_errors_m(
     truth: Truth, track: RecordedTrack, matches: Matches, joints: str = "upper"
 ) -> Floats:
     """Distances (K,J) [m] of the joints in the matched frames."""
-    a, b = _matched(truth, track, matches, joints)
+    a, b = _matching_joints(truth, track, matches, joints)
     errors: Floats = np.linalg.norm(a - b, axis=2)
     return errors
 
@@ -120,7 +120,7 @@ def joint_errors_m(
 def score(truth: Truth, track: RecordedTrack, joints: str = "upper") -> Score:
     """Score the joints of a set of JOINT_SETS. Raises InputError when the track lacks one."""
     matches = match(truth, track, joints)
-    a, b = _matched(truth, track, matches, joints)
+    a, b = _matching_joints(truth, track, matches, joints)
     error_cm = 100.0 * np.linalg.norm(a - b, axis=2)
     tracked = len(matches.truth_rows) > 0
     nan = float("nan")
@@ -163,14 +163,16 @@ def interior_angle_deg(joints_m: Floats, names: Sequence[str], angle: Angle) -> 
     return degrees
 
 
-def _columns(names: Sequence[str], joints: str, whose: str) -> list[int]:
+def _columns(names: Sequence[str], joints: str, source: str) -> list[int]:
     missing = [name for name in JOINT_SETS[joints] if name not in names]
     if missing:
-        raise InputError(f"{whose} lacks the joints {', '.join(missing)}", fix="score other joints")
+        raise InputError(
+            f"{source} lacks the joints {', '.join(missing)}", fix="score other joints"
+        )
     return [list(names).index(name) for name in JOINT_SETS[joints]]
 
 
-def _matched(
+def _matching_joints(
     truth: Truth, track: RecordedTrack, matches: Matches, joints: str
 ) -> tuple[Floats, Floats]:
     """Joints (K,J,3) of truth and track in the matched frames."""

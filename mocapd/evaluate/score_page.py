@@ -79,7 +79,7 @@ def write_page(
 def write_plot(
     directory: Path, results: Sequence[CaptureResult], joints: str, force: bool = False
 ) -> Path:
-    """The plot of errors over confidence, beside the page. Raises CannotCreateError."""
+    """Write the plot of errors over confidence into the page's folder. Raises CannotCreateError."""
     # matplotlib takes a second to import
     from mocapd.evaluate.plots import reliability_plot, save
 

@@ -14,7 +14,7 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def number(value: float | None, digits: int) -> str:
-    """`-` where there is nothing to tell, `never` for what did not happen."""
+    """The number; `-` for None or NaN, `never` for infinity."""
     if value is None or math.isnan(value):
         return "-"
     return "never" if math.isinf(value) else f"{value:.{digits}f}"

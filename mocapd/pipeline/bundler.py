@@ -4,7 +4,7 @@ The rule. A set is built around one frame, the anchor: that of the rig's first c
 part. Another camera's frame belongs to it when the two are at most half a period apart. With equal
 rates exactly one frame of each camera does, so nothing waits longer than that frame needs, and the
 spread stays within half a period. Two cameras half a period apart would change partners with every
-jitter; so an established pairing is kept until it exceeds half a period by `hysteresis_periods`.
+jitter; so an established pairing lasts until it exceeds half a period by `hysteresis_periods`.
 
 The wait. Each camera's period and delay (arrival minus capture) are learned, so the bundler knows
 when the next frame of each should arrive. A set goes out the moment its last expected frame
@@ -34,12 +34,12 @@ from mocapd.types import Frame, FrameSet
 class BundlerParams:
     """How long the frames of one moment wait for each other; periods are learned from the cameras.
 
-    period_s: assumed of a camera until two of its frames were seen [s]
+    period_s: assumed of a camera before its second frame [s]
     slack_periods: how late a frame may be before its set goes without it [periods]
     longest_wait_periods: no set waits longer than this after its first frame arrived [periods]; a camera
-      whose delay exceeds the others' by more is never paired
+      with a delay beyond the others' by more is never paired
     hysteresis_periods: by how much an established pairing may exceed half a period [periods]
-    patience: sets in a row a camera may miss before nobody waits for it any more
+    patience: sets in a row that a camera may miss before sets stop waiting for it
     camera_waits_s: by camera, how long a set waits for it after its first frame arrived [s], in place of
       the slack and the longest wait
     """
@@ -96,7 +96,7 @@ class Bundler:
         return self._drain(now_ns)
 
     def flush(self, now_ns: int) -> tuple[FrameSet, ...]:
-        """The sets whose waiting time is over at `now_ns`, oldest first."""
+        """The sets whose timeout has passed at `now_ns`, oldest first."""
         return self._drain(self._advance(now_ns))
 
     def finish(self) -> tuple[FrameSet, ...]:
@@ -130,7 +130,7 @@ class Bundler:
         return tuple(sets)
 
     def _next_members(self, now_ns: int | None) -> list[CameraQueue]:
-        """The cameras, anchor first, whose oldest frames form the next set; none while it waits.
+        """The cameras of the next set, anchor first, each with its oldest frame; none while it waits.
 
         It is the set of the oldest frame at hand. In rig order each camera's frame, at hand or
         awaited, claims the free ones within its reach, until the oldest is claimed.
@@ -183,7 +183,7 @@ class Bundler:
         slack_ns = round(self._params.slack_periods * oldest.period_ns)
         longest_ns = round(self._params.longest_wait_periods * oldest.period_ns)
         until_ns = oldest.head_arrival_ns + (longest_ns if own_ns is None else own_ns)
-        if camera.seen and own_ns is None:
+        if camera.has_received and own_ns is None:
             until_ns = min(until_ns, expected_ns + camera.delay_ns + slack_ns)
         return until_ns if now_ns < until_ns else None
 
@@ -198,7 +198,7 @@ class Bundler:
         return abs(offset_ns) <= reach_periods * min(anchor.period_ns, other.period_ns)
 
     def _discard_late(self) -> None:
-        """Drop the frames whose set has gone out already."""
+        """Drop the frames of sets that have gone out already."""
         anchor, last_ns = self._last_anchor, self._last_ns
         if anchor is None:
             return

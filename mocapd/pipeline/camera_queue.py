@@ -26,8 +26,8 @@ class CameraQueue:
         self._delays: deque[int] = deque(maxlen=_REMEMBERED)
 
     @property
-    def seen(self) -> bool:
-        """Whether any frame came yet, so that something is learned."""
+    def has_received(self) -> bool:
+        """True after the first frame: period and delay are measured."""
         return self._newest is not None
 
     @property
@@ -81,7 +81,7 @@ class CameraQueue:
     def expected_ns(self, near_ns: int) -> int:
         """The capture time, nearest to `near_ns`, of a frame still to come."""
         if self._newest is None:
-            return near_ns  # nothing known: it may come any moment
+            return near_ns  # before the first frame: it may come at any time
         newest_ns = self._newest[1]
         steps = round((near_ns - newest_ns) / self.period_ns)
         return newest_ns + max(1, steps) * self.period_ns

@@ -1,4 +1,4 @@
-"""The newest picture of every camera, for whoever looks; frames go on to who works with them."""
+"""Holds the newest frame of every camera for readers and passes every frame to subscribers."""
 
 import threading
 from collections.abc import Iterable
@@ -9,15 +9,15 @@ from mocapd.types import Frame
 
 
 class TakesFrames(Protocol):
-    """Where frames go on to; `put` never blocks."""
+    """A subscriber; `put` never blocks."""
 
     def put(self, frame: Frame, /) -> None: ...
 
 
 class FrameHub:
-    """The mailbox of capture threads. Keeps a reference to each camera's newest frame, no copy.
+    """The mailbox of capture threads. Holds a reference to each camera's newest frame, no copy.
 
-    Safe from any threads. Whoever joins gets every frame from then on, in the capture threads; `bundler`:
+    Safe from any threads. A subscriber gets every frame from `join` on, in the capture threads; `bundler`:
     how whoever makes frame sets of them is to wait for these cameras.
     """
 

@@ -1,4 +1,4 @@
-"""Latencies counted by size since the start: what percentiles of the last ten seconds do not tell."""
+"""Histogram of all latencies since the start, which percentiles of the last ten seconds do not show."""
 
 from bisect import bisect_left
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The pipeline's thread: newest frame set -> tracker -> smoother -> bodies; without frames, word of that."""
+"""The pipeline's thread: newest frame set -> tracker -> smoother -> bodies; without frames, bodies of `absence`."""
 
 import threading
 from collections.abc import Callable
@@ -107,7 +107,7 @@ class PipelineLoop:
                 self._none(self._absence)
             if self._collector.idle:
                 garbage.idle(monotonic_ns())
-            self._recorder.turned()
+            self._recorder.count_turn()
 
     def _one(self, frames: FrameSet) -> None:
         number = self._collector.sets
@@ -122,10 +122,10 @@ class PipelineLoop:
             body = self._absence.came(body, monotonic_ns())
         self._bodies.put(BodySample(replace(track, body=body), self._skeleton, frames))
         now_ns = monotonic_ns()
-        self._recorder.published(frames, body, step_ns, now_ns, track.lost_reason)
+        self._recorder.record_body(frames, body, step_ns, now_ns, track.lost_reason)
         busy_ns = now_ns - start_ns
         others = self._others.share(now_ns)
-        self._recorder.judged(self._slowness.tracked(number, busy_ns, now_ns, others))
+        self._recorder.set_slowness(self._slowness.update(number, busy_ns, now_ns, others))
         self._spare(frames, number, busy_ns, now_ns)
 
     def _spare(self, frames: FrameSet, number: int, busy_ns: int, now_ns: int) -> None:
@@ -133,21 +133,21 @@ class PipelineLoop:
         if not isinstance(self._tracker, EffortTracker):
             return
         before = self._effort.effort
-        now = self._effort.tracked(frames.t_ns, number, busy_ns, now_ns)
+        now = self._effort.update(frames.t_ns, number, busy_ns, now_ns)
         if now is not before:
             self._tracker.set_effort(now)
             self._recorder.effort_changed(now)
 
     def _none(self, absence: Absence) -> None:
-        """No frames came for a while."""
-        body = absence.tell(monotonic_ns())
+        """Publish a body without frames, if one is due."""
+        body = absence.next_body(monotonic_ns())
         if body is not None:
             nothing = FrameSet(body.t_ns, {})
             self._bodies.put(BodySample(Track(body, self._shape), self._skeleton, nothing))
             self._recorder.absent(body)
 
     def _wait_s(self) -> float:
-        """How long to wait for frames before something else is due."""
+        """Timeout for the next frames, until another task is due."""
         due_ns = self._absence.due_ns if self._absence is not None else None
         if due_ns is None:
             return LOOK_UP_S

@@ -28,7 +28,7 @@ Families = Iterator[
 
 
 def metrics_text(snapshot: Snapshot | None) -> bytes:
-    """Figures of now; None: nothing tracks, and the process alone is told of."""
+    """The current metrics; None: nothing tracks, and only the process's metrics are served."""
     registry = CollectorRegistry(auto_describe=False)
     registry.register(_Collected(() if snapshot is None else tuple(_families(snapshot))))
     ProcessCollector(registry=registry)

@@ -53,7 +53,7 @@ class RecordingRoutes:
             Route("/recordings", self._list),
             Route("/recordings", self._do, methods=["POST"]),
             Route("/recordings/{id}", self._file),
-            Route("/recordings/{id}/{format}", self._exported),
+            Route("/recordings/{id}/{format}", self._export),
             Route("/recenter", self._recenter, methods=["POST"]),
         ]
 
@@ -91,7 +91,7 @@ class RecordingRoutes:
 
         return await _answer(read)
 
-    async def _exported(self, request: Request) -> Response:
+    async def _export(self, request: Request) -> Response:
         id_, format_ = request.path_params["id"], request.path_params["format"]
 
         def export() -> Response:

@@ -96,7 +96,7 @@ class WebServer:
         state_dir = None if self._place is None else self._place.state_dir
         frames = frames_access(self._origins, state_dir)
         metrics = metrics_access(self._with_metrics, state_dir)
-        listening = _listen(self._port)
+        listening = _open_listener(self._port)
         self._port = listening.getsockname()[1]
         limit_logs()
         routes = make_app(self._host, self.encoder, frames, metrics.enabled)
@@ -138,7 +138,7 @@ class WebServer:
         self._thread.start()
 
     def let_go(self) -> None:
-        """First pass of stopping: no new page, the open ones are told; never blocks."""
+        """First phase of stopping: accept no new page, notify the open ones; never blocks."""
         if self._server is not None:
             self._server.should_exit = True
 
@@ -163,16 +163,16 @@ class WebServer:
 
 
 class _Server(uvicorn.Server):
-    """With a queue that is longer than what is taken from it at once."""
+    """With a backlog longer than the number of connections accepted at once."""
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
-        for one in sockets or ():
-            one.listen(QUEUE)
+        for listening in sockets or ():
+            listening.listen(QUEUE)
 
 
 class _Deadly:
-    """ASGI middleware: uvicorn would log what nobody expected, and go on."""
+    """ASGI middleware that reports unexpected errors to `died`: uvicorn would log them and continue."""
 
     def __init__(self, app: ASGIApp, died: Callable[[BaseException], None]) -> None:
         self._app, self._died = app, died
@@ -187,7 +187,7 @@ class _Deadly:
             raise
 
 
-def _listen(port: int) -> socket.socket:
+def _open_listener(port: int) -> socket.socket:
     listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -1,4 +1,4 @@
-"""`mocapd completion`, and what a shell asks when somebody presses Tab."""
+"""`mocapd completion`, and the answers to a shell's completion requests."""
 
 import os
 from enum import StrEnum
@@ -11,7 +11,7 @@ from typer._completion_shared import get_completion_script
 VARIABLE = "_MOCAPD_COMPLETE"  # that the shell's script sets; typer answers it and ends
 
 
-Shell = StrEnum("Shell", ["bash", "zsh", "fish"])  # whose completion can be loaded from a file
+Shell = StrEnum("Shell", ["bash", "zsh", "fish"])  # those that load completions from a file
 
 
 def add_to(app: typer.Typer) -> None:

@@ -74,12 +74,12 @@ def _command(command: "Command", context: typer.Context) -> Iterator[str]:
     yield f'.SS "{_text(f"mocapd {context.info_name} {usage}")}"'
     example = ""
     for number, paragraph in enumerate((command.help or "").split("\n\n")):
-        told = " ".join(paragraph.split())
-        if told.startswith("Example: "):
-            example = told.removeprefix("Example: ")
+        text = " ".join(paragraph.split())
+        if text.startswith("Example: "):
+            example = text.removeprefix("Example: ")
             continue
         yield from ([".PP"] if number else [])
-        yield _text(told)
+        yield _text(text)
     for parameter in command.params:
         record = parameter.get_help_record(context)
         if record is not None:
@@ -94,10 +94,10 @@ def _table(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[str]:
         yield from (".TP", rf"\fB{_text(term)}\fR", _text(meaning))
 
 
-def _text(told: str) -> str:
-    """As roff shows it: nothing in it is a command, and a hyphen can be copied as one."""
-    told = " ".join(told.split())
+def _text(text: str) -> str:
+    """Escaped for roff: nothing in it is a command, and a hyphen can be copied as one."""
+    text = " ".join(text.split())
     for mark, escape in _ESCAPES:
-        told = told.replace(mark, escape)
-    told = _NOT_ASCII.sub(lambda found: rf"\[u{ord(found[0]):04X}]", told)
-    return rf"\&{told}" if told.startswith(".") else told
+        text = text.replace(mark, escape)
+    text = _NOT_ASCII.sub(lambda match: rf"\[u{ord(match[0]):04X}]", text)
+    return rf"\&{text}" if text.startswith(".") else text

@@ -1,4 +1,4 @@
-"""The real daemon in a process of its own on simulated webcams, seen by a real subscriber."""
+"""Benchmark of the real daemon in its own process on simulated webcams, by a real subscriber."""
 
 import math
 import os
@@ -31,7 +31,7 @@ STOP_S = 5.0
 
 
 class Looks(Protocol):
-    """Somebody who looks at the page; `pictures` counts those that came."""
+    """A client of the page; `pictures` counts the received ones."""
 
     pictures: int
 
@@ -77,17 +77,16 @@ class LiveFigures:
 def bench_live(
     command: Sequence[str], cameras: int, duration_s: float, watching: Watching | None = None
 ) -> LiveFigures:
-    """Run a daemon for so long [s] after its first frame and look at it from outside.
+    """Run a daemon for `duration_s` [s] after its first frame and measure it from outside.
 
-    `command` starts `mocapd run` without its ports and instance, which are chosen here, on so many
-    cameras. `watching`: who looks at its page meanwhile. Raises UnavailableError when it does not
-    start, or ends by itself.
+    `command` starts `mocapd run` on so many cameras; ports and instance are chosen here. `watching`: a client of its
+    page, if any. Raises UnavailableError when it does not start, or ends by itself.
     """
     with ExitStack() as opened:
         # apart from the page of a daemon that this user may have running
         runtime_dir = Path(opened.enter_context(tempfile.TemporaryDirectory()))
         osc = opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
-        osc.bind(("127.0.0.1", 0))  # somebody listens; what is not read the system discards
+        osc.bind(("127.0.0.1", 0))  # a receiver; the system discards what it does not read
         endpoint = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
         started_ns = monotonic_ns()
         daemon = opened.enter_context(
@@ -152,7 +151,7 @@ def _figures(
 
 @contextmanager
 def _running(command: Sequence[str], runtime_dir: Path) -> Iterator[subprocess.Popen[bytes]]:
-    """A daemon, asked to end on leaving. What it says on stderr is told when it ends by itself."""
+    """A daemon, terminated on exit. If it ends by itself, the error has the last line of its stderr."""
     env = {name: value for name, value in os.environ.items() if name != "RUNTIME_DIRECTORY"}
     env["XDG_RUNTIME_DIR"] = str(runtime_dir)
     with tempfile.TemporaryFile() as said:
@@ -160,7 +159,7 @@ def _running(command: Sequence[str], runtime_dir: Path) -> Iterator[subprocess.P
         try:
             yield process
             if process.poll() is not None:
-                raise _ended(said)
+                raise _exit_error(said)
         finally:
             process.send_signal(signal.SIGTERM)
             try:
@@ -170,7 +169,7 @@ def _running(command: Sequence[str], runtime_dir: Path) -> Iterator[subprocess.P
                 process.wait()
 
 
-def _ended(said: IO[bytes]) -> UnavailableError:
+def _exit_error(said: IO[bytes]) -> UnavailableError:
     said.seek(0)
     lines = said.read().decode(errors="replace").strip().splitlines()
     return UnavailableError("the daemon ended by itself", "bench", lines[-1] if lines else "")

@@ -40,7 +40,7 @@ def recording_cost(path: Path, hours: float) -> RecordingCost:
     """Of the motion in this recording, over and over at HZ. Raises InputError."""
     items = list(RecordingReader(path).everything())
     if not any(isinstance(item, SkeletonFrame) and item.joints for item in items):
-        raise InputError("nobody is tracked in it", str(path), "record a person")
+        raise InputError("no person is tracked in it", str(path), "record a person")
     sizes: list[float] = []
     usual_ms = [0.0]
     with tempfile.TemporaryDirectory() as folder:
@@ -55,7 +55,7 @@ def recording_cost(path: Path, hours: float) -> RecordingCost:
             target.unlink()
             if params == RecordingParams():
                 usual_ms = took_ms
-        lost_s = tuple(_killed(path, Path(folder), after_s) for after_s in KILLED_AFTER_S)
+        lost_s = tuple(_loss_after_kill(path, Path(folder), after_s) for after_s in KILLED_AFTER_S)
     median, p99 = np.percentile(usual_ms, [50, 99])
     return RecordingCost((sizes[0], sizes[1], sizes[2]), (float(median), float(p99)), lost_s)
 
@@ -77,17 +77,17 @@ def _write(path: Path, items: list[Recorded], params: RecordingParams, count: in
         for item in itertools.islice(_endless(writer, items), count):
             began_s = time.perf_counter()
             writer.frame(item)
-            writer.beat(item.capture_monotonic_ns)
+            writer.flush_if_due(item.capture_monotonic_ns)
             took_ms.append(1e3 * (time.perf_counter() - began_s))
     return took_ms
 
 
 def _endless(writer: RecordingWriter, items: list[Recorded]) -> Iterator[SkeletonFrame]:
-    """Its frames at HZ, over and over; states are told at once."""
+    """Its frames at HZ, repeated for ever; states are written first."""
     unix_ns = unix_from_monotonic_ns()
     for item in items:
         if isinstance(item, RestSkeleton | CalibrationInfo):
-            writer.tell(item, unix_ns)
+            writer.add_state(item, unix_ns)
     frames = itertools.cycle(item for item in items if isinstance(item, SkeletonFrame))
     for number, frame in enumerate(frames):
         t_ns = number * _PERIOD_NS
@@ -100,8 +100,8 @@ def _endless(writer: RecordingWriter, items: list[Recorded]) -> Iterator[Skeleto
         )
 
 
-def _killed(source: Path, folder: Path, after_s: float) -> float:
-    """How much of what a process had written in real time was lost when it was killed [s]."""
+def _loss_after_kill(source: Path, folder: Path, after_s: float) -> float:
+    """The recorded time that a killed process lost [s]."""
     target = folder / "killed.mcap"
     name = write_in_real_time.__name__
     program = f"from {__name__} import {name}; {name}(*sys.argv[1:])"
@@ -131,4 +131,4 @@ def write_in_real_time(source: str, target: str) -> None:
             writer.frame(frame)
             sys.stdout.write(f"{frame.seq}\n")
             sys.stdout.flush()
-            writer.beat(time.monotonic_ns())
+            writer.flush_if_due(time.monotonic_ns())

@@ -52,11 +52,11 @@ class Subscriber:
                 self._session = self._opened.enter_context(zenoh.open(self._config))
             except zenoh.ZError:
                 return False
-            handler = zenoh.handlers.Callback(self._arrived, indirect=False)
+            handler = zenoh.handlers.Callback(self._on_sample, indirect=False)
             self._session.declare_subscriber(keys.skeleton(self._instance, 0), handler)
         return True
 
-    def _arrived(self, sample: zenoh.Sample) -> None:
+    def _on_sample(self, sample: zenoh.Sample) -> None:
         self._received.append((monotonic_ns(), sample.payload.to_bytes()))
 
     @property
@@ -69,9 +69,9 @@ class Subscriber:
         return [Heard(wire.decode(data), at_ns) for at_ns, data in tuple(self._received)]
 
     def health(self) -> Health:
-        """The daemon's last word on itself, at most a second old. Raises UnavailableError."""
+        """The daemon's newest health message, at most a second old. Raises UnavailableError."""
         if self._session is not None:
             for reply in self._session.get(keys.health(self._instance), timeout=ANSWER_S):
                 if reply.ok is not None:
                     return msgspec.msgpack.decode(reply.ok.payload.to_bytes(), type=Health)
-        raise UnavailableError("the daemon does not tell its health", "bench", "try `mocapd run`")
+        raise UnavailableError("the daemon sends no health message", "bench", "try `mocapd run`")

@@ -1,4 +1,4 @@
-"""The tutorial tracker: looks at no picture and replays a looping wave, for those who write clients."""
+"""The tutorial tracker: ignores the pictures and replays a looping wave, for authors of clients."""
 
 import numpy as np
 
@@ -23,7 +23,7 @@ class CannedTracker:
         self.probe: Probe = unprobed
 
     def reset(self, near: BodyState | None = None) -> None:
-        """Nothing to forget, and nobody else's body to go on from."""
+        """Does nothing: the tracker has no state."""
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """The loop's pose at `frames.t_ns`; lost without any frame."""

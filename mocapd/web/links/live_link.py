@@ -35,7 +35,7 @@ class LiveLink:
 
     async def run(self) -> None:
         """Until the window leaves."""
-        await serve(self._socket, self._figures(), self._bodies(), self._listen())
+        await serve(self._socket, self._figures(), self._bodies(), self._read_messages())
 
     async def _figures(self) -> None:
         while True:
@@ -58,7 +58,7 @@ class LiveLink:
                 await send_json(self._socket, body_json(body))
             await asyncio.sleep(1.0 / MOST_HZ)
 
-    async def _listen(self) -> None:
+    async def _read_messages(self) -> None:
         while True:
             if (await understood(self._socket, Watch)).watch:
                 self._watched.set()

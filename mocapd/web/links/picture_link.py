@@ -44,7 +44,7 @@ async def picture_link(socket: WebSocket, host: Host, encoder: PictureEncoder) -
     async def answers() -> None:
         under_way = 0
 
-        def ended(_task: asyncio.Task[None]) -> None:
+        def on_done(_task: asyncio.Task[None]) -> None:
             nonlocal under_way
             under_way -= 1
 
@@ -54,7 +54,9 @@ async def picture_link(socket: WebSocket, host: Host, encoder: PictureEncoder) -
                 if under_way >= MOST_UNDER_WAY:
                     raise BadMessageError("more requests than cameras")
                 under_way += 1
-                group.create_task(_answer(socket, host, encoder, request)).add_done_callback(ended)
+                group.create_task(_answer(socket, host, encoder, request)).add_done_callback(
+                    on_done
+                )
 
     await serve(socket, answers())
 

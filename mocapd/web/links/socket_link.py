@@ -1,4 +1,4 @@
-"""What all WebSockets of the page share."""
+"""Common functions of the page's WebSockets."""
 
 import asyncio
 from collections.abc import Awaitable, Coroutine, Iterable, Iterator
@@ -21,10 +21,10 @@ MOST_HZ = 15.0  # how often anything is sent to a page
 
 
 class BadMessageError(Exception):
-    """A page said something that is not understood: one of another version, or no page at all."""
+    """An invalid message, perhaps of a page of another version."""
 
 
-async def received(socket: WebSocket) -> str | bytes:
+async def receive(socket: WebSocket) -> str | bytes:
     """The next message, text or binary. Raises WebSocketDisconnect."""
     message = await socket.receive()
     if message["type"] == "websocket.disconnect":
@@ -36,7 +36,7 @@ async def received(socket: WebSocket) -> str | bytes:
 
 async def understood(socket: WebSocket, kind: type[T], longest: int = LONGEST_MESSAGE) -> T:
     """The next message as `kind`, of at most `longest` bytes. Raises WebSocketDisconnect or BadMessageError."""
-    said = await received(socket)
+    said = await receive(socket)
     if len(said) > longest:
         raise BadMessageError("that is too much")
     try:

@@ -16,9 +16,9 @@ from starlette.websockets import WebSocket
 
 from mocapd.boundary.parsing import decode_json
 from mocapd.errors import MalformedError, MocapdError, Problem
+from mocapd.web.editor_lease import EditorLease
 from mocapd.web.host import Host
-from mocapd.web.links.socket_link import MOST_HZ, received, send_json, serve
-from mocapd.web.seat import Seat
+from mocapd.web.links.socket_link import MOST_HZ, receive, send_json, serve
 from mocapd.web.shown_json import as_json
 from mocapd.wizard.wizard_view import WizardView
 
@@ -37,17 +37,17 @@ class PageCommand(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class WizardLink:
     """One browser window."""
 
-    def __init__(self, socket: WebSocket, host: Host, seat: Seat) -> None:
-        self._socket, self._host, self._seat = socket, host, seat
+    def __init__(self, socket: WebSocket, host: Host, lease: EditorLease) -> None:
+        self._socket, self._host, self._lease = socket, host, lease
         self._refused: Problem | None = None  # by us, not by the wizard
 
     async def run(self) -> None:
         """Until the window leaves."""
-        self._seat.join(self)
+        self._lease.join(self)
         try:
             await serve(self._socket, self._show(), self._obey())
         finally:
-            self._seat.leave(self, asyncio.get_running_loop().time())
+            self._lease.leave(self, asyncio.get_running_loop().time())
 
     async def _show(self) -> None:
         last = b""
@@ -64,7 +64,7 @@ class WizardLink:
         message: dict[str, object] = {"setup": False}
         if wizard is not None:
             message = view_json(wizard.view())
-        message["driver"] = self._seat.drives(self, asyncio.get_running_loop().time())
+        message["driver"] = self._lease.drives(self, asyncio.get_running_loop().time())
         message["cameras"] = list(hub.names) if hub is not None else []
         if self._refused is not None or wizard is None:
             message["refused"] = self._refused and asdict(self._refused)
@@ -72,7 +72,7 @@ class WizardLink:
 
     async def _obey(self) -> None:
         while True:
-            text = await received(self._socket)
+            text = await receive(self._socket)
             try:
                 command = decode_json(text, PageCommand)
             except MalformedError as error:
@@ -84,10 +84,10 @@ class WizardLink:
     async def _take(self, command: PageCommand) -> None:
         begins = command.verb == "begin" and self._host.wizard is None
         if begins or command.verb == "take_over":
-            self._seat.take_over(self)
+            self._lease.take_over(self)
         if command.verb == "take_over":
             return
-        if not self._seat.drives(self, asyncio.get_running_loop().time()):
+        if not self._lease.drives(self, asyncio.get_running_loop().time()):
             self._refused = NOT_THE_DRIVER
         elif command.verb == "begin":
             try:
