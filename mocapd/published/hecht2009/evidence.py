@@ -76,8 +76,8 @@ class CameraEvidence:
             self.background.take_uncovered(self._now.colour, self.before, self._body, no_arms)
 
     def mark_body(self, ends_m: Floats | None, radii_m: Floats) -> None:
-        """Where the parts of ends (C,2,3) and radii (C,2) [m] are, widened, nothing is learned as background, and they hide
-        each other; None: nobody is known."""
+        """Mark the body: parts of ends (C,2,3) and radii (C,2) [m]. The background is not learned in their widened outlines,
+        and they occlude each other. None: no body is tracked."""
         self._body[:] = 0
         if ends_m is None:
             return
@@ -91,21 +91,21 @@ class CameraEvidence:
         self._body = np.asarray(cv2.dilate(self._body, self._beside), np.uint8)
 
     def mark_unknown(self) -> None:
-        """What stands before a known background may be somebody."""
+        """Mark the whole foreground as a possible person."""
         if not self.background.is_new:
             known = ((self.before > 0) & (self.before != UNKNOWN)).astype(np.uint8)
             self._body = np.asarray(cv2.dilate(known, self._beside), np.uint8)
 
     def learn_background(self) -> None:
-        """Follow the background where nobody is marked."""
+        """Update the background outside the marked area."""
         self.background.learn(self._now.colour, self._body)
 
     def seed_background(self) -> None:
-        """Take what is beside the marked body for the background."""
+        """Initialise the background from the picture outside the marked body."""
         self.background.seed(self._now.colour, self._body)
 
     def person(self) -> Bytes:
-        """(h,w): 255 where somebody or dark cloth stands before the background, or nobody knows it."""
+        """(h,w): 255 on the foreground, dark cloth included, and where the background is unknown."""
         return np.where((self.before > 0) & (self.before != SHADOW), 255, 0).astype(np.uint8)
 
     def head_picture(self) -> HeadPicture:
@@ -128,14 +128,14 @@ class CameraEvidence:
         )  # fmt: skip
 
     def observed(self) -> RingColours:
-        """The colours of the marked parts where somebody stands before the background."""
+        """The colours of the marked parts on the foreground."""
         return observe(
             self._quads, self._depths_m, self._now.colour, self.person(), self._occlusion,
             self._params.score.hidden_by_m,
         )  # fmt: skip
 
     def share_before(self, ends_m: Floats) -> Floats:
-        """How much (C,) of each part's axis (C,2,3) [m] stands before the background, 0..1; NaN where that is not known."""
+        """The share (C,) of each part's axis (C,2,3) [m] on the foreground, 0..1; NaN without a background."""
         along = ends_m[:, :1] + _ALONG[:, None] * (ends_m[:, 1:] - ends_m[:, :1])
         xy = (project(self.camera, along.reshape(-1, 3)) + 0.5) * self._scale
         w, h = self._size_px
@@ -186,7 +186,7 @@ class RigEvidence:
         return [view for view in self.each if view.present]
 
     def share_before(self, ends_m: Floats) -> Floats:
-        """How much (C,) of each part stands before the backgrounds, the mean of cameras that tell; NaN where none does."""
+        """The share (C,) of each part on the foreground: the mean over cameras with a background; NaN without one."""
         shares = np.array([view.share_before(ends_m) for view in self.present])
         seen = np.isfinite(shares)
         total = np.where(seen, shares, 0.0).sum(axis=0)

@@ -1,4 +1,4 @@
-"""Where in space a face is that one camera sees: by a camera beside it, by one far from it, or by its size alone."""
+"""Position of a face in one camera's picture: by a close second camera, by a distant one, or by its size alone."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

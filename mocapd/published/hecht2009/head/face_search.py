@@ -1,7 +1,7 @@
-"""Faces looked for in whole pictures, a part of one picture in each step, and watched for signs of life.
+"""Searches whole pictures for faces, a part of one picture in each step, and tests them for liveness.
 
-A face on a poster stays as it is: what decides is whether the picture there has changed over the last seconds. A
-picture of a face, still or moving, whose true size is not a person's is none either; that takes two cameras.
+A face on a poster does not change: the test is whether the picture there has changed over the last seconds. A face of
+the wrong true size is rejected too, still or moving; this needs two cameras.
 """
 
 from collections.abc import Sequence
@@ -35,10 +35,10 @@ _WINDOWS = 36_000  # looked at in one step: 4 ms
 _LEAST_PX = 21.0  # of a face, with the picture enlarged a little
 _LOOKS = 4  # of the places of one step that are looked at closely
 _REACH = 0.45  # of the side: how far a face moves from one step to the next
-_PAST_S = 0.25  # between pictures that are kept
+_PAST_S = 0.25  # between stored pictures
 _PASTS = 10
 _OLD_S = 0.3  # before a picture counts as past
-_SMALL = 4  # by which the kept pictures are reduced
+_SMALL = 4  # reduction factor of stored pictures
 _AROUND = 1.6  # of the box's side: head and hair
 _STILL = 0.012  # loss of correlation of a place where nothing but noise changes
 _SWAPPED_LOOKS = (
@@ -48,8 +48,8 @@ _SWAPPED_LOOKS = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FaceCandidate:
-    """A face that one view (camera index) sees; unseen_s: since it was last found there; looks: how often it was.
-    alive: its place has changed, None: too soon to tell. placed: where it is, as of `placed_s` ago; None: not yet."""
+    """A face in one view (camera index); unseen_s: time since its last detection; looks: number of detections. alive: its
+    picture has changed, None: too early. placed: its position as of `placed_s` ago; None: not yet."""
 
     view: int
     box: FaceBox
@@ -61,7 +61,7 @@ class FaceCandidate:
 
 
 class FaceSearch:
-    """Keeps the faces that are seen, where the search goes on, and what the pictures looked like."""
+    """State of the search: the face candidates, the scan position, and earlier pictures."""
 
     def __init__(self, cascade: CascadeArrays, stature_m: float, params: HeadParams) -> None:
         self._cascade, self._stature_m, self._params = cascade, stature_m, params
@@ -112,7 +112,7 @@ class FaceSearch:
         return replace(older, box=seen[0], unseen_s=0.0, looks=of.looks + 1, alive=alive)
 
     def _place_one(self, views: Sequence[HeadView], by_index: dict[int, HeadView]) -> None:
-        """The candidate whose place is oldest, of those that are seen: one in each step, for it takes time."""
+        """Update the oldest position of the current candidates: only one a step, because it takes time."""
         seen = [i for i, c in enumerate(self.candidates) if c.unseen_s == 0.0]
         if not seen:
             return

@@ -1,4 +1,4 @@
-"""The head's particles: moved, drawn anew where the measurements are, weighed."""
+"""The head's particle filter: predict, sample at the measurements, weight and resample."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from mocapd.types import Floats
 _SD_FLOOR_M = 0.004  # of the cloud along any direction, so that its density can be written down
 
 _FAR_SDS = 4.0
-_WIDE_M = 0.5  # spread of a place of which nothing is known but what is measured
+_WIDE_M = 0.5  # prior spread of a position
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,7 +37,7 @@ def along_ray(from_m: Floats, ray: Floats, sigma_across_m: float) -> tuple[Float
 def at_distance(
     from_m: Floats, ray: Floats, distance_m: float, sigma_m: float
 ) -> tuple[Floats, Floats]:
-    """At this distance from a point (3,), seen along a unit vector (3,)."""
+    """At this distance from a point (3,), along a unit vector (3,)."""
     return from_m + distance_m * ray, np.outer(ray, ray) / sigma_m**2
 
 
@@ -99,7 +99,7 @@ def is_far(cloud: Cloud, seen: HeadObservations) -> bool:
 def cloud_about(
     seen: HeadObservations, before: Cloud, params: HeadParams, rng: np.random.Generator
 ) -> Cloud:
-    """Particles where the measurements are, what they leave open as it was; their velocity is not known."""
+    """Particles sampled at the measurements, with unmeasured directions unchanged and a wide velocity."""
     mean, _ = moments(before.place_m)
     middle, covariance = updated(mean, _WIDE_M**2 * np.eye(3), seen)
     return cloud_at(middle, covariance, params, rng)

@@ -41,12 +41,12 @@ _PARTS = ((0.0, 0.45, 0.45), (-0.45, 0.0, 0.45), (0.45, 0.0, 0.45))
 _GATE_M = 0.04  # beyond what is uncertain: a distance that jumps farther is that of something else
 _NEARER_M = 0.1  # at most, whatever is uncertain: a hand before the face is as near as that
 _LEAST_SKIN = 0.12  # share of the head, under which it is turned away
-_FULL_SIDE = 0.5  # how far to one side the skin's middle lies on a head seen from the side
+_FULL_SIDE = 0.5  # offset of the skin's middle on a head in profile
 _NO_FOREGROUND = np.zeros((0, 0), np.uint8)
 # a hand before the face lowers the correlation: it may lose that much more than faces lost before
 _LOSS_TIMES = 2.5
 _LOSS_MORE = 0.01
-_USUAL_LOSS = 0.05  # before any was seen
+_USUAL_LOSS = 0.05  # initial value
 _LOSS_SHARE = 0.05  # of a new face in what is usual
 
 
@@ -95,7 +95,7 @@ class HeadEvidence:
             if i == self._turn % len(views):
                 boxes[view.index] = self._face(view, at_m)
         is_complete = has_distance = False
-        # the view whose face is seen first: its distance is the surest
+        # the view with the first face detection: its distance is the surest
         for view in sorted(views, key=lambda v: boxes[v.index] is None):
             pair = self._distance(views, view, boxes[view.index], guess)
             if pair is not None:
@@ -141,7 +141,7 @@ class HeadEvidence:
     def _distance(
         self, views: Sequence[HeadView], near: HeadView, box: FaceBox | None, guess: HeadGuess
     ) -> tuple[Floats, Floats] | None:
-        """From this view and one close beside it: of the head, or of the part of it that no hand is before."""
+        """From this view and a close second one: of the head, or of its part without a hand in front."""
         at_m = guess.middle_m + near.offset_s * guess.velocity_m_s
         outline = ellipse_of(near.camera, at_m, self._size)
         if outline is None:
@@ -174,7 +174,7 @@ class HeadEvidence:
         return None
 
     def _is_bare(self, found: Distance) -> bool:
-        """Whether the two views of the patch agree as well as they did when the face was seen."""
+        """True if the two views of the patch agree as well as at the last face detection."""
         return 1.0 - found.correlation <= _LOSS_TIMES * self._loss + _LOSS_MORE
 
     def _swept(
@@ -199,7 +199,7 @@ class HeadEvidence:
         return out
 
     def support(self, views: Sequence[HeadView], middle_m: Floats, velocity_m_s: Floats) -> float:
-        """Of colours and outline at one place, in the view that sees them best; 0 while no colours are known."""
+        """Score of colours and outline at one place, in the best view; 0 before colours are learned."""
         at_m = [middle_m + view.offset_s * velocity_m_s for view in views]
         return max((self._sure(v, at) for v, at in zip(views, at_m, strict=True)), default=0.0)
 
@@ -251,7 +251,7 @@ class HeadEvidence:
     def yaw_rad(
         self, views: Sequence[HeadView], middle_m: Floats, velocity_m_s: Floats
     ) -> float | None:
-        """Which way a face that was just seen looks, by the side of the head on which its skin shows; None: not known.
+        """Yaw of a just detected face, by the side of the head with the skin; None: unknown.
 
         Coarse, 10 to 30 degrees, and only for heads that show their face: hair may have the colour of skin.
         """

@@ -1,8 +1,8 @@
-"""The head from frame to frame: found by its face, followed by a particle filter in all views, lost and found again.
+"""Tracks the head: detection by its face, then a particle filter in all views, and detection again after a loss.
 
 Hecht, Azad and Dillmann, Markerless Human Motion Tracking with a Flexible Model and Appearance Learning, ICRA 2009,
-section III.B, in world coordinates and with every camera at once: each particle is a head in space, weighed by the
-colours and outline that it explains in each picture, by faces seen, and by its distance from a close pair.
+section III.B, in world coordinates and with every camera at once: each particle is a head in space, weighted by the
+colours and outline that it explains in each picture, by detected faces, and by its distance from a close pair.
 """
 
 from collections.abc import Sequence
@@ -54,7 +54,7 @@ _APART_M = 0.3  # a face that is farther from the tracked head belongs to anothe
 
 
 class HeadTracker:
-    """Holds the particles, the colours of the head and the search for faces; nothing else is kept between steps."""
+    """The state between steps: the particles, the head's colours and the search for faces."""
 
     def __init__(
         self,
@@ -94,7 +94,7 @@ class HeadTracker:
         views = head_views(self._cameras, self._arrays, pictures)
         self._search.remember(views, dt_s)
         if self._near_m is not None and views:
-            # what stands there is the head, with no face seen of it
+            # the surface there is the head, without a detected face
             self._evidence.learn_first(
                 views, PlacedFace(self._near_m, 0.05, Depth.MEETING, {}, 1.0)
             )
@@ -114,7 +114,7 @@ class HeadTracker:
         return self._found(views)
 
     def _found(self, views: Sequence[HeadView]) -> HeadTrack:
-        """The best face that is seen; it is tracked from now on when it is alive and of a head's size."""
+        """The best detected face; starts to track it if it is live and of a head's size."""
         if self._search.swapped:
             return HeadTrack(HeadState.LOST, fault=StereoFault.SWAPPED)
         known = [(c, c.placed) for c in self._search.candidates if c.placed and self._is_head(c, c.placed)]  # fmt: skip
@@ -127,7 +127,7 @@ class HeadTracker:
         return self._told(HeadState.FOUND, best, placed)
 
     def _outlined(self, views: Sequence[HeadView]) -> HeadTrack:
-        """Somebody before a known background, whose head stays one over some looks, though no face is seen."""
+        """A head without a detected face: a head outline before the background in several successive looks."""
         seen = outlined_head(views, self._stature_m, self._params)
         lost = HeadTrack(HeadState.LOST, fault=self._fault)
         if seen is None:

@@ -18,8 +18,8 @@ _UNKNOWN = np.zeros((0, 0), np.uint8)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeadView:
-    """A camera's picture: its place among the cameras, grey for faces and distance, colours, its lateness [s], and
-    foreground (h,w), or (0,0) where that is not known."""
+    """A camera's picture: the camera's index, grey for faces and distance, colours, its lateness [s], and foreground
+    (h,w), or (0,0) where that is unknown."""
 
     index: int
     stereo: StereoView
