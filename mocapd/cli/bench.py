@@ -23,7 +23,7 @@ _DEFAULT = "sim:living_room"
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("bench")(bench_command)
 
 

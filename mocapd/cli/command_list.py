@@ -1,4 +1,4 @@
-"""The commands, one file each. The files import what is heavy only when their command runs."""
+"""The list of commands, one file each. A file imports heavy modules only when its command runs."""
 
 import typer
 

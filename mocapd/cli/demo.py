@@ -19,7 +19,7 @@ SCENARIO = "living_room"
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("demo")(demo)
 
 

@@ -31,7 +31,7 @@ class Joints(StrEnum):
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("eval")(evaluate_captures)
 
 
@@ -112,7 +112,7 @@ def evaluate_captures(
 
 
 def _refuse_moved(option: str, module: str, value: str | bool | None) -> None:
-    """Raises UsageError for an option of the first release that a command of the checkout has now."""
+    """Raises UsageError for an option of the first release that has moved to a command of the source tree."""
     if value:
         raise UsageError(
             f"{option} is no option of `mocapd eval` any more",

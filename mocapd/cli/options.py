@@ -1,4 +1,4 @@
-"""The options that commands share, and what they mean for the configuration."""
+"""Common options of the commands, and their effect on the configuration."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -70,7 +70,7 @@ VariantOption = Annotated[str | None, typer.Option("--variant", hidden=True)]
 
 
 def refuse_variant(variant: str | None) -> None:
-    """Raises UsageError for the option of earlier versions."""
+    """Raises UsageError for a removed option."""
     from mocapd.config.removed_keys import REMOVED
 
     if variant is not None:
@@ -80,7 +80,7 @@ def refuse_variant(variant: str | None) -> None:
 
 
 def vrm_flags(vrm: Path | None) -> dict[str, str]:
-    """What --vrm means, for `effective_config`."""
+    """The flags of --vrm for `effective_config`."""
     return {} if vrm is None else {"vmc__vrm": str(vrm), "vmc__enabled": "true"}
 
 

@@ -9,7 +9,7 @@ from mocapd.errors import UsageError
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("send-test")(send_test_command)
 
 

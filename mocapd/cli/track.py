@@ -17,14 +17,14 @@ from mocapd.cli.options import (
 
 
 class RoomSeen(StrEnum):
-    """What a recording shows of the empty room."""
+    """The part of a recording for learning the empty room."""
 
     EMPTY = "empty"
     WHOLE = "whole"
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("track")(track)
 
 

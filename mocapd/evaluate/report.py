@@ -81,7 +81,7 @@ def reliability_table(of: Reliability) -> str:
 
 
 def groups_by_cameras(results: Sequence[CaptureResult]) -> list[tuple[str, list[CaptureResult]]]:
-    """Captures with as many cameras, where there is more than one."""
+    """Groups of two or more captures with the same number of cameras."""
     out = []
     for cameras in sorted({len(result.case.folder.cameras) for result in results}, reverse=True):
         group = [r for r in results if len(r.case.folder.cameras) == cameras]

@@ -1,4 +1,4 @@
-"""Tables of text that read well in a terminal and are Markdown at once."""
+"""Text tables for a terminal that are also valid Markdown."""
 
 import math
 from collections.abc import Sequence

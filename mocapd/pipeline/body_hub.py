@@ -44,7 +44,7 @@ class BodyHub:
         self._onwards: tuple[TakesBodies, ...] = onwards
 
     def put(self, sample: BodySample) -> None:
-        """Hand in a body."""
+        """Add a body."""
         with self._lock:
             self._newest = sample
             onwards = self._onwards

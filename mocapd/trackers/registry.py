@@ -76,7 +76,7 @@ def _nothing_lacks(_calibration: Calibration, _cameras: Collection[str]) -> str:
 
 
 def _rig_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
-    """For trackers that one calibrated camera suffices."""
+    """For trackers that need one calibrated camera."""
     if calibration.rig is None:
         return "needs to know where the cameras are"
     if not set(calibration.rig.names) & set(cameras):
@@ -85,7 +85,7 @@ def _rig_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
 
 
 def _pair_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
-    """For trackers that two calibrated cameras in different places suffice."""
+    """For trackers that need two calibrated cameras in different places."""
     missing = _rig_lacks(calibration, cameras)
     if missing or calibration.rig is None:
         return missing
@@ -103,7 +103,7 @@ def _pair_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
 
 
 def _ring_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
-    """For trackers by the visual hull, which of two cameras' silhouettes is several times a body."""
+    """For trackers by the visual hull, which needs three cameras: of two it is several times a body's volume."""
     missing = _pair_lacks(calibration, cameras)
     if missing or calibration.rig is None:
         return missing
@@ -133,7 +133,7 @@ def _database(resources: Resources) -> "PoseDatabase":
 
 
 def _lacks(name: str, calibration: Calibration, cameras: Collection[str]) -> Mapping[str, str]:
-    """By each cue of this profile that the wearer may have, what it lacks."""
+    """For each cue of this profile that the wearer may have: the reason why it cannot track, or empty."""
     profile = PROFILES[name]
     lacking = {}
     if profile.shirt and (calibration.wearer.has_shirt or not profile.clothes):
@@ -144,7 +144,7 @@ def _lacks(name: str, calibration: Calibration, cameras: Collection[str]) -> Map
 
 
 def _profile(name: str) -> TrackerEntry:
-    """A body tracker, which is content with any of its cues."""
+    """The entry of a body tracker, which needs at least one of its cues."""
     profile = PROFILES[name]
 
     def lacks(calibration: Calibration, cameras: Collection[str]) -> str:

@@ -1,4 +1,4 @@
-"""What is at which address of the page."""
+"""The page's routes."""
 
 import os
 from collections.abc import Awaitable, Callable
@@ -31,7 +31,7 @@ from mocapd.web.shown_json import as_json
 from mocapd.web.status_page import SetupAnswer, SetupRequest, Status
 
 PAGE_DIR = Path(__file__).with_name("page")
-# given here, as what the system believes of a suffix differs, and nosniff is strict about scripts
+# explicit, because systems map suffixes differently, and nosniff is strict about scripts
 MEDIA_TYPES = {
     ".html": "text/html",
     ".css": "text/css",
@@ -61,8 +61,8 @@ class _Routes:
     def __init__(self, host: Host, encoder: PictureEncoder, frames: FramesAccess) -> None:
         self._host, self._encoder, self._frames_access = host, encoder, frames
         self._lease = EditorLease()
-        self._sockets = 0  # that are open, of our own page
-        self._games = 0  # and of allowed sites, which take no room of the page's
+        self._sockets = 0  # open WebSockets of our own page
+        self._games = 0  # and of allowed sites, which have a limit of their own
         # loaded now: no path is ever built from a request
         self._files = {
             path.name: (path.read_bytes(), MEDIA_TYPES[path.suffix])
@@ -120,7 +120,7 @@ class _Routes:
         )
 
     async def _setup(self, request: Request) -> Response:
-        """Begin a setup, or go on with the one there is; with {step}, at that step."""
+        """Start a setup, or continue the current one; with {step}, at that step."""
         try:
             body = await read_body(request)
             asked = decode_json(body or b"{}", SetupRequest)
@@ -138,8 +138,8 @@ class _Routes:
         return _json(SetupAnswer())
 
     async def metrics(self, _request: Request) -> Response:
-        """For Prometheus."""
-        # here, as few ask for it, and the library takes a tenth of a second
+        """The metrics for Prometheus."""
+        # imported here: it takes a tenth of a second, and few users need it
         from mocapd.web.metrics_text import MEDIA_TYPE, metrics_text
 
         return Response(

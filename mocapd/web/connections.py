@@ -55,7 +55,7 @@ class _Connection(asyncio.Protocol):
         self._end_stall()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """It is closed."""
+        """Stop the timers of the closed connection."""
         self._end_stall()
         super().connection_lost(exc)
 
@@ -66,7 +66,7 @@ class _Connection(asyncio.Protocol):
 
 
 class HttpConnection(_Connection, H11Protocol):
-    """Waits REQUEST_S for a request to be whole, headers and body."""
+    """With a timeout of REQUEST_S for a complete request, headers and body."""
 
     _deadline: asyncio.TimerHandle | None = None
 
@@ -111,7 +111,7 @@ class HttpConnection(_Connection, H11Protocol):
             self.transport.close()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """It is closed."""
+        """Stop the timers of the closed connection."""
         self._end_wait()
         super().connection_lost(exc)
 

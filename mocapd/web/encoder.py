@@ -48,7 +48,7 @@ class _Newest:
 
 
 class PictureEncoder:
-    """Used within one event loop; encodes in `executor`. `encoded` counts what it has encoded."""
+    """Used within one event loop; encodes in `executor`. `encoded` counts the encoded pictures."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""How everything fares, in the text format of Prometheus."""
+"""The daemon's metrics in the text format of Prometheus."""
 
 from collections.abc import Iterable, Iterator
 from itertools import accumulate
@@ -40,7 +40,7 @@ class _Collected(Collector):
         self._families = families
 
     def collect(self) -> Iterable[object]:  # type: ignore[override]
-        """As the registry asks."""
+        """Called by the registry."""
         return self._families
 
 

@@ -174,7 +174,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _remove(path: Path) -> None:
-    """Both files of a process; what cannot be removed does no harm."""
+    """Remove both files of a process; errors are ignored, because stale files do no harm."""
     for suffix in (".json", ".html"):
         with suppress(OSError):
             path.with_suffix(suffix).unlink()

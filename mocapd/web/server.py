@@ -39,14 +39,14 @@ from mocapd.web.runtime_file import ADDRESS, Place, announce, redirect_file, url
 
 _log = logging.getLogger(__name__)
 
-STOP_S = 1.4  # what ending may take: uvicorn looks every 0.1 s, and gives its sockets 1 s [s]
+STOP_S = 1.4  # timeout of `stop`: uvicorn polls every 0.1 s, and gives its sockets 1 s [s]
 
 
 class WebServer:
     """Serves the page from `start` to `stop`, or as a context manager.
 
-    `died` is called, in the server's thread, with whatever unexpected happened there. `place`: where
-    the URL is said (see runtime_file), if it shall be. `encoder` counts its work.
+    `died` is called in the server's thread with an unexpected exception. `place`: where to announce the
+    URL (see runtime_file), or None. `encoder` counts its pictures.
     """
 
     def __init__(
@@ -79,16 +79,16 @@ class WebServer:
 
     @property
     def url(self) -> str:
-        """Where the page is, with the token of this start; valid once started."""
+        """The page's URL with the token of this start; valid once started."""
         return url_of(self._port, self._token)
 
     @property
     def redirect(self) -> Path | None:
-        """A file that leads a browser of our user to the page; None when nothing is announced."""
+        """A file that redirects our user's browser to the page; None without an announcement."""
         return None if self._place is None else redirect_file(self._place.folder, os.getpid())
 
     def start(self) -> None:
-        """Returns as soon as the page can be asked for.
+        """Start; returns as soon as the page answers.
 
         Raises UnavailableError for a taken port, CannotCreateError when the URL cannot be announced, and as
         `frames_access` and `metrics_access`.
@@ -115,7 +115,7 @@ class WebServer:
             backlog=ACCEPTED_AT_ONCE,
             h11_max_incomplete_event_size=LONGEST_HEAD,
             ws_max_size=LONGEST_MESSAGE,
-            ws_ping_interval=None,  # on one machine the system tells when a browser has gone
+            ws_ping_interval=None,  # on one machine the system closes the socket of a browser that has gone
             ws_per_message_deflate=False,  # JPEG does not get any smaller
             timeout_graceful_shutdown=1,
         )
@@ -143,7 +143,7 @@ class WebServer:
             self._server.should_exit = True
 
     def stop(self, timeout_s: float = STOP_S) -> bool:
-        """Let go and join; False when something still blocks the thread after `timeout_s` [s]."""
+        """End and join; False when the thread is still blocked after `timeout_s` [s]."""
         self.let_go()
         if self._place is not None:
             withdraw(self._place.folder)
@@ -155,7 +155,7 @@ class WebServer:
 
     def _run(self, server: uvicorn.Server, listening: socket.socket) -> None:
         try:
-            # in this thread uvicorn leaves the signals alone
+            # in this thread uvicorn installs no signal handlers
             server.run(sockets=[listening])
         except BaseException as error:
             self._died(error)

@@ -10,7 +10,7 @@ import typer.main
 import mocapd
 
 if TYPE_CHECKING:
-    from typer._click import Command  # which typer brings itself
+    from typer._click import Command  # part of typer
 
 _EXIT_CODES = (
     ("0", "done; also after SIGTERM, or when its terminal is closed"),
@@ -36,7 +36,7 @@ _ENVIRONMENT = (
     ("MOCAPD_KEY, MOCAPD_SECTION_KEY", "one key each; mocapd check-config prints what is in force"),
     ("NO_COLOR", "no colours"),
 )
-# The backslash first: the others bring their own.
+# The backslash first: the other escapes contain one.
 _ESCAPES = (
     ("\\", r"\e"), ("-", r"\-"), ('"', r"\(dq"), ("'", r"\(aq"), ("`", r"\(ga"), ("^", r"\(ha"), ("~", r"\(ti"),
 )  # fmt: skip
@@ -44,7 +44,7 @@ _NOT_ASCII = re.compile(r"[^\x20-\x7e]")
 
 
 def man_page(app: typer.Typer) -> str:
-    """The whole page; the same bytes for the same version."""
+    """The whole page; deterministic for a version."""
     group = typer.main.get_command(app)
     assert isinstance(group, typer.core.TyperGroup)
     top = typer.Context(group, info_name="mocapd")
@@ -69,7 +69,7 @@ def man_page(app: typer.Typer) -> str:
 
 
 def _command(command: "Command", context: typer.Context) -> Iterator[str]:
-    """Its usage, its help, its arguments and options, its example."""
+    """A command's section: usage, help, arguments and options, example."""
     usage = " ".join(command.collect_usage_pieces(context))
     yield f'.SS "{_text(f"mocapd {context.info_name} {usage}")}"'
     example = ""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from mocapd.client import Link
     from mocapd.control.control_messages import StatusReport
 
-# As of an init script's `status` (LSB), where 150 to 199 are the program's own.
+# Exit codes of an init script's `status` (LSB); 150 to 199 are application-specific.
 ABLE = 0
 NOT_RUNNING = 3
 UNKNOWN = 4
@@ -21,7 +21,7 @@ SLOW = 151
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("status")(status)
 
 
@@ -84,7 +84,7 @@ def _print_all(link: "Link", as_json: bool) -> int:
 
 
 def exit_code(report: "StatusReport") -> int:
-    """Of one daemon that answers."""
+    """The exit code for one daemon that answers."""
     if report.state == "slow":
         return SLOW
     return ABLE if report.state in ("tracking", "nobody") else UNABLE

@@ -15,7 +15,7 @@ Legs = StrEnum("Legs", ["seen", "all"])
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("export")(export)
 
 

@@ -9,7 +9,7 @@ from mocapd.cli.options import ConfigOption, ForceOption, SetOption, effective_c
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("record")(record)
 
 

@@ -19,7 +19,7 @@ SHOW_EVERY_S = 0.25
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("replay")(replay)
 
 

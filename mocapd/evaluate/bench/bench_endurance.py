@@ -80,7 +80,7 @@ def _figures(step_ms: Floats, rss: Floats) -> EnduranceFigures:
 
 
 def _rounds(recording: BenchInput) -> Iterator[list[FrameSet]]:
-    """The chunks of a recording for ever, later by one length in each round."""
+    """The chunks of a recording, repeated for ever with increasing times."""
     offset_ns = 0
     while True:
         end_ns = offset_ns

@@ -1,4 +1,4 @@
-"""What a benchmark runs on: the frame sets of a capture folder or of a simulated scenario, decoded."""
+"""Input of a benchmark: the decoded frame sets of a capture folder or of a simulated scenario."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass

@@ -25,8 +25,8 @@ from mocapd.outputs.messages import Health
 from mocapd.types import Floats
 
 INSTANCE = "bench"
-FIRST_FRAME_S = 150.0  # how long to wait for the first frame; its first start ever compiles [s]
-LOOK_EVERY_S = 1.0  # how often memory is read [s]
+FIRST_FRAME_S = 150.0  # timeout of the first frame; the very first start compiles kernels [s]
+LOOK_EVERY_S = 1.0  # sampling interval of memory [s]
 STOP_S = 5.0
 
 
@@ -41,7 +41,7 @@ Watching = Callable[[Path], AbstractContextManager[Looks]]  # given the daemon's
 
 @dataclass(frozen=True, slots=True)
 class LiveFigures:
-    """What the subscriber and the system saw of a daemon in `seconds` [s], from its first frame on.
+    """Measurements of a daemon by a subscriber and the system over `seconds` [s] from its first frame on.
 
     start_s: from the start of the process to the first published frame [s]; rate_hz: frames
     received per second; dropped: share of all frame sets, from the very first, that were displaced
@@ -83,7 +83,7 @@ def bench_live(
     page, if any. Raises UnavailableError when it does not start, or ends by itself.
     """
     with ExitStack() as opened:
-        # apart from the page of a daemon that this user may have running
+        # separate from the page of the user's own daemon
         runtime_dir = Path(opened.enter_context(tempfile.TemporaryDirectory()))
         osc = opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         osc.bind(("127.0.0.1", 0))  # a receiver; the system discards what it does not read
@@ -123,7 +123,7 @@ def _figures(
     latency_ms, arrival_ms = (published - captured) / 1e6, (arrived - captured) / 1e6
     sent = heard[-1].frame.seq - heard[0].frame.seq + 1
     rate_hz = (n - 1) * NS_PER_S / float(arrived[-1] - arrived[0])
-    # frames before the first that was heard went out while the subscriber was still connecting
+    # earlier frames were sent before the subscriber was connected
     first_ns = first.frame.publish_monotonic_ns - round(first.frame.seq * NS_PER_S / rate_hz)
     settled = rss[len(rss) // 2 :]
     return LiveFigures(

@@ -1,4 +1,4 @@
-"""What recording costs: megabytes an hour, time a frame, and what a kill takes along. By `mocapd bench --recording`."""
+"""Measures the cost of recording: megabytes an hour, time a frame, and the loss at a kill. `mocapd bench --recording`."""
 
 import itertools
 import subprocess
@@ -28,8 +28,8 @@ _PERIOD_NS = round(NS_PER_S / HZ)
 
 @dataclass(frozen=True, slots=True)
 class RecordingCost:
-    """mb_an_hour: frames alone, with bones for Foxglove at 10 Hz, and bit by bit as published; frame_ms: median and 99th
-    percentile of one frame, handing chunks to the file included; lost_s: of each kill."""
+    """mb_an_hour: frames alone, with bones for Foxglove at 10 Hz, and exact as published; frame_ms: median and 99th
+    percentile of one frame, with writing of chunks; lost_s: of each kill."""
 
     mb_an_hour: tuple[float, float, float]
     frame_ms: tuple[float, float]
@@ -37,7 +37,7 @@ class RecordingCost:
 
 
 def recording_cost(path: Path, hours: float) -> RecordingCost:
-    """Of the motion in this recording, over and over at HZ. Raises InputError."""
+    """The cost for the motion in this recording, repeated at HZ. Raises InputError."""
     items = list(RecordingReader(path).everything())
     if not any(isinstance(item, SkeletonFrame) and item.joints for item in items):
         raise InputError("no person is tracked in it", str(path), "record a person")
@@ -61,7 +61,7 @@ def recording_cost(path: Path, hours: float) -> RecordingCost:
 
 
 def as_lines(cost: RecordingCost) -> list[str]:
-    """For people."""
+    """The figures as text."""
     alone, usual, exact = cost.mb_an_hour
     return [
         f"{usual:.1f} MB an hour at {HZ:g} Hz ({alone:.1f} without bones for Foxglove, {exact:.1f} with --exact)",
@@ -71,7 +71,7 @@ def as_lines(cost: RecordingCost) -> list[str]:
 
 
 def _write(path: Path, items: list[Recorded], params: RecordingParams, count: int) -> list[float]:
-    """So many frames as fast as it goes, as if in their own time; what each took [ms]."""
+    """Write so many frames as fast as possible, with their own times; returns the duration of each [ms]."""
     took_ms = []
     with RecordingWriter(path, params, 0) as writer:
         for item in itertools.islice(_endless(writer, items), count):
@@ -121,7 +121,7 @@ def _loss_after_kill(source: Path, folder: Path, after_s: float) -> float:
 
 
 def write_in_real_time(source: str, target: str) -> None:
-    """Until it is killed; the number of each frame goes to stdout once it is handed over."""
+    """Write until killed; prints the number of each written frame to stdout."""
     items = list(RecordingReader(Path(source)).everything())
     with RecordingWriter(Path(target), RecordingParams(), time.monotonic_ns()) as writer:
         began_ns = time.monotonic_ns()

@@ -1,4 +1,4 @@
-"""The figures of a benchmark as one JSON object, and as tables for people."""
+"""The figures of a benchmark as one JSON object, and as text tables."""
 
 from collections.abc import Mapping
 from dataclasses import asdict

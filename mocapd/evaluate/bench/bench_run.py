@@ -1,4 +1,4 @@
-"""Benchmarks of one recording: which trackers, built how, and what was found."""
+"""Benchmarks of one recording with each suitable tracker."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ from mocapd.tracking.tracking_state import TrackingStateParams
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BenchResults:
-    """What was measured, by tracker; `skipped` says why a tracker is absent."""
+    """The measurements by tracker; `skipped`: the reason for each missing tracker."""
 
     recording: str
     steps: dict[str, StepFigures] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""What one step of a tracker costs: time, processor time, memory, and how the time is spent."""
+"""Measures one step of a tracker: time, processor time, memory, and the time of each stage."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -14,7 +14,7 @@ from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.tracking.base import Tracker
 from mocapd.types import FrameSet
 
-REST = "rest"  # what is left of a step after its last named stage
+REST = "rest"  # the part of a step after its last named stage
 NS_PER_MS = 1e6
 BYTES_PER_MB = 1e6
 
@@ -60,7 +60,7 @@ class StageClock:
         self._last_ns = 0
 
     def start(self) -> None:
-        """A step begins."""
+        """Start a step."""
         self._stages = {}
         self._last_ns = time.perf_counter_ns()
 
@@ -102,7 +102,7 @@ def bench_tracker(
 
 
 class _Samples:
-    """What each step took."""
+    """Samples of the time and memory of each step."""
 
     def __init__(self, shape: BodyShape) -> None:
         self._shape = shape

@@ -1,4 +1,4 @@
-"""A subscriber that keeps every frame with its arrival, and asks for the daemon's health."""
+"""A subscriber that stores every frame with its arrival time, and queries the daemon's health."""
 
 import json
 from contextlib import ExitStack
@@ -21,14 +21,14 @@ ANSWER_S = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """A frame and when it arrived, CLOCK_MONOTONIC [ns]."""
+    """A frame and its arrival time, CLOCK_MONOTONIC [ns]."""
 
     frame: SkeletonFrame
     arrival_ns: int
 
 
 class Subscriber:
-    """Used by one thread; frames arrive on Zenoh's, and are decoded when they are asked for."""
+    """Used by one thread; frames arrive on Zenoh's thread, and are decoded on access."""
 
     def __init__(self, endpoint: str, instance: str) -> None:
         config = client_config(endpoint, timeout_s=CONNECT_S)
@@ -46,7 +46,7 @@ class Subscriber:
         self._opened.close()
 
     def connect(self) -> bool:
-        """Try once, unless connected; whether it is."""
+        """Try to connect once, unless connected; returns whether it is connected."""
         if self._session is None:
             try:
                 self._session = self._opened.enter_context(zenoh.open(self._config))
@@ -61,7 +61,7 @@ class Subscriber:
 
     @property
     def count(self) -> int:
-        """Of frames so far."""
+        """Number of frames so far."""
         return len(self._received)
 
     def heard(self) -> list[Heard]:

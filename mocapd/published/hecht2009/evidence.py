@@ -1,4 +1,4 @@
-"""What each camera shows: its work picture, edges and motion, what stands before its background, and what hides what."""
+"""Evidence of each camera: work picture, edges and motion, foreground, and occlusion model."""
 
 from collections.abc import Sequence
 
@@ -21,7 +21,7 @@ from mocapd.vision.foreground_kernels import SHADOW, UNKNOWN
 from mocapd.vision.frame_size import check_frame_size
 from mocapd.vision.room_background import RoomBackground
 
-_ALONG = (np.arange(6) + 0.5) / 6.0  # where a part is looked at, from start to end
+_ALONG = (np.arange(6) + 0.5) / 6.0  # sample positions on a part, from start to end
 
 
 class CameraEvidence:
@@ -53,11 +53,11 @@ class CameraEvidence:
 
     @property
     def present(self) -> bool:
-        """Whether the camera took part in the last frame set."""
+        """True if the last frame set had a frame of this camera."""
         return self._pixels is not None
 
     def look(self, pixels: Bytes | None, offset_s: float) -> None:
-        """Take a frame's pixels (h,w,3), or none. Raises ConfigError when it is not of its calibration's size."""
+        """Process a frame's pixels (h,w,3), or None. Raises ConfigError when its size is not the calibration's."""
         had = self._pixels is not None
         self._pixels, self.offset_s = pixels, offset_s
         if pixels is None:
@@ -68,7 +68,7 @@ class CameraEvidence:
         self._edges.fill(self._now.grey, self._last.grey if had else None, self._params.edges)
 
     def stand_before(self, uncovered: bool) -> None:
-        """Renew what stands before the background; uncovered: and take for background what was uncovered."""
+        """Update the foreground; uncovered: also move uncovered background (ghosts) into the background model."""
         self.background.follow_light(self._now.colour, self._body)
         self.before = self.background.before(self._now.colour)
         if uncovered:
@@ -109,7 +109,7 @@ class CameraEvidence:
         return np.where((self.before > 0) & (self.before != SHADOW), 255, 0).astype(np.uint8)
 
     def head_picture(self) -> HeadPicture:
-        """The frame as the head's tracker asks for it."""
+        """The frame as input of the head tracker."""
         if self._pixels is None:
             return HeadPicture(None)
         foreground = None
@@ -121,7 +121,7 @@ class CameraEvidence:
         return HeadPicture(self._pixels, self.offset_s, foreground)
 
     def limb_view(self, reference: Singles) -> LimbView:
-        """The evidence as the limbs' filters ask for it; reference (C,along,3): colours of the parts."""
+        """The evidence as input of the limbs' filters; reference (C,along,3): colours of the parts."""
         return LimbView(
             self.index, self.work_camera, self._now.colour, self._edges.edges, self._edges.motion, reference,
             self._occlusion,
@@ -151,7 +151,7 @@ class CameraEvidence:
 
 
 class RigEvidence:
-    """All cameras of a rig, and the looks of the parts in each."""
+    """All cameras of a rig, and the appearance of the parts in each."""
 
     def __init__(self, rig: Rig, params: Params) -> None:
         scales = image_scales(rig.cameras, params.work_width_px)
@@ -162,17 +162,17 @@ class RigEvidence:
         self.reset()
 
     def reset(self) -> None:
-        """Forget backgrounds and looks."""
+        """Reset backgrounds and appearance."""
         for view in self.each:
             view.reset()
         self.forget_person()
 
     def forget_person(self) -> None:
-        """Forget what the person looks like."""
+        """Reset the person's appearance."""
         self.appearance = AppearanceModel.unknown(len(self.each), len(NAMES))
 
     def look(self, frames: FrameSet) -> None:
-        """Take the pictures. Raises ConfigError when one is not of its calibration's size."""
+        """Process the pictures. Raises ConfigError when a size is not the calibration's."""
         for view in self.each:
             frame = frames.frames.get(view.camera.name)
             if frame is None:
@@ -182,7 +182,7 @@ class RigEvidence:
 
     @property
     def present(self) -> Sequence[CameraEvidence]:
-        """Those that took part in the last frame set."""
+        """The cameras of the last frame set."""
         return [view for view in self.each if view.present]
 
     def share_before(self, ends_m: Floats) -> Floats:

@@ -35,10 +35,10 @@ class Params:
     falloff_per_m: float = -12.0
     sure_m: float = 0.10  # spread of a point at which it teaches 1/e as much of its colour
 
-    # starting from the body that hangs from the head
+    # initialisation with the body that hangs from the head
     match_edge: float = 0.45  # mean edge penalty 0..1 of hanging limbs on a person
     match_before: float = 0.6  # share of the body that stands before the background
-    # how far arms are raised sideways where they are looked for at the start: people show a T-pose, or hold hands apart
+    # sideways angles of the arms in the initial search: people show a T-pose, or hold hands apart
     raised_rad: tuple[float, ...] = (0.0, 0.2, 0.4, 0.8, 1.2, 1.57)
     rehang_m: float = 0.3  # motion of the head between two pictures that means another person
     rehang_rad: float = 0.6  # by which the face may turn from where the body was hung

@@ -7,7 +7,7 @@ from mocapd.published.hecht2009.mass_spring.body_points import JOINT_POINTS, JOI
 from mocapd.published.hecht2009.mass_spring.frusta import NAMES
 from mocapd.types import Floats
 
-_HALF_M = 0.12  # an uncertainty that halves a confidence
+_HALF_M = 0.12  # the uncertainty at which a confidence halves
 _SPRINGS_M = 0.03  # additional uncertainty by the springs, between measured and other points
 
 

@@ -71,7 +71,7 @@ class _Known:
 
 
 class Hecht2009Tracker:
-    """Two calibrated cameras or more see a whole person; see `mocapd.tracking.base.Tracker` for the promises."""
+    """For two or more calibrated cameras with the whole person in view; contract: `mocapd.tracking.base.Tracker`."""
 
     name = "hecht2009"
 
@@ -95,7 +95,7 @@ class Hecht2009Tracker:
         self.reset()
 
     def reset(self, near: BodyState | None = None) -> None:
-        """Forget pose, background and appearance. near: a body that is tracked on from where it is."""
+        """Reset pose, background and appearance. near: a body to continue from."""
         self._views.reset()
         self._head.reset()
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)

@@ -1,4 +1,4 @@
-"""A whole body searched for in points of the hull by turns: the root, legs, arms, each in the points that are left."""
+"""Searches for a whole body in points of the hull, in order root, legs, arms, each in the remaining points."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -116,7 +116,7 @@ def standing_place(points_m: Floats, stature_m: float) -> Floats | None:
 def started(
     body: BodyChains, floor_m: Floats, cloud: PointCloud, rng: np.random.Generator, params: Params
 ) -> BodyPlace:
-    """The best body that stands at a place (3,) of the floor, facing anywhere, the arms out or down."""
+    """The best body at a place (3,) of the floor, over all facing directions, with the arms out or down."""
     p = params.root
     guesses = _stances(body, floor_m, 2.0 * np.pi * np.arange(p.yaws) / p.yaws, p.raised_rad)
     place = _heaviest(body, guesses, cloud, params)

@@ -1,4 +1,4 @@
-"""How well particles of a limb match: by points in space as the paper has it, by silhouettes, and by empty ellipsoids."""
+"""Weights of a limb's particles: by points in space as in the paper, by silhouettes, and by empty ellipsoids."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -28,14 +28,14 @@ class CameraSilhouette:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the background."""
+        """Reset the background."""
         self.background.reset()
         self._before = np.zeros(self.picture.bgr.shape[:2], np.uint8)
         self._body = np.zeros_like(self._before)  # where no background is learned
         self._drawn = np.zeros_like(self._before)  # the ellipsoids of the body
 
     def renew(self, uncovered: bool) -> None:
-        """Compare the newest picture with the background; uncovered: and take for background what was uncovered."""
+        """Compare the newest picture with the background; uncovered: also move uncovered background into the model."""
         self.background.follow_light(self.picture.bgr, self._body)
         self._before = self.background.before(self.picture.bgr)
         if uncovered:
@@ -81,7 +81,7 @@ class CameraSilhouette:
         self.background.seed(self.picture.bgr, near)
 
     def edges_at_outline(self) -> tuple[float, float]:
-        """How steep the picture is along the marked body's outline, and farther outside of it."""
+        """The picture's gradient along the marked body's outline, and farther outside of it."""
         if not self._drawn.any():
             return 0.0, 0.0
         edges = brightness_edges(self.picture.bgr)
@@ -102,12 +102,12 @@ class RigSilhouettes:
         self.cameras: list[Camera] = []
 
     def reset(self) -> None:
-        """Forget the backgrounds."""
+        """Reset the backgrounds."""
         for one in self._every:
             one.reset()
 
     def look(self, frames: FrameSet) -> None:
-        """Take the pictures. Raises ConfigError when one is not of its calibration's size."""
+        """Process the pictures. Raises ConfigError when a size is not the calibration's."""
         there = self._pictures.look(frames)
         self.present = [self._every[i] for i in there]
         self.cameras = [self._cameras[i] for i in there]

@@ -1,6 +1,6 @@
-"""The WebSocket `/ws`: what the setup shows goes to the page when it changes, commands come back.
+"""The WebSocket `/ws`: sends the setup's state to the page on change, and receives its commands.
 
-To the page, JSON: {setup: false, cameras, driver, refused} when no setup is going on, else {setup:
+To the page, JSON: {setup: false, cameras, driver, refused} without a setup, else {setup:
 true, serial, step, steps, done, view: {state, sentence, progress, problems, details}, refused, saved,
 ended, driver, cameras}. From the page: {verb, args}; `take_over` is answered here, `begin` begins a
 setup, the rest is the wizard's.
@@ -28,7 +28,7 @@ NOT_THE_DRIVER = Problem(
 
 
 class PageCommand(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a person did on the page."""
+    """A user's action on the page."""
 
     verb: Annotated[str, Meta(max_length=100)]
     args: dict[str, object] = {}
@@ -39,7 +39,7 @@ class WizardLink:
 
     def __init__(self, socket: WebSocket, host: Host, lease: EditorLease) -> None:
         self._socket, self._host, self._lease = socket, host, lease
-        self._refused: Problem | None = None  # by us, not by the wizard
+        self._refused: Problem | None = None  # by this link, not by the wizard
 
     async def run(self) -> None:
         """Until the window leaves."""
@@ -99,7 +99,7 @@ class WizardLink:
 
 
 def view_json(shown: WizardView) -> dict[str, object]:
-    """What the page shows of the setup, without what depends on the window."""
+    """The setup's state for the page, without the parts that depend on the window."""
     view = shown.view
     return {
         "setup": True,

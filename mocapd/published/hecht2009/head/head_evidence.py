@@ -1,4 +1,4 @@
-"""What the pictures of one instant say of a head that is followed: its face, its distance, its colours."""
+"""Evidence of a tracked head in the pictures of one instant: face, distance and colours."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,10 +36,10 @@ _REACH = 0.5  # of the face's side: how far from where it is expected it is look
 _SAME = 0.7  # of the face's side: farther off it is another's
 _WINDOWS = 1  # that find a face where one is expected
 _PATCH = 0.8  # of the head's half height: the patch whose distance is taken
-# where hands leave part of the head free: crown, left, right; middle in half widths and half heights, and size
+# patches for a head that is partly hidden by hands: crown, left, right; middle in half widths and heights, and size
 _PARTS = ((0.0, 0.45, 0.45), (-0.45, 0.0, 0.45), (0.45, 0.0, 0.45))
-_GATE_M = 0.04  # beyond what is uncertain: a distance that jumps farther is that of something else
-_NEARER_M = 0.1  # at most, whatever is uncertain: a hand before the face is as near as that
+_GATE_M = 0.04  # beyond the uncertainty: a distance that jumps farther is of another object
+_NEARER_M = 0.1  # limit of a jump towards the camera, for any uncertainty: a hand in front of the face is that near
 _LEAST_SKIN = 0.12  # share of the head, under which it is turned away
 _FULL_SIDE = 0.5  # offset of the skin's middle on a head in profile
 _NO_FOREGROUND = np.zeros((0, 0), np.uint8)
@@ -61,7 +61,7 @@ class HeadGuess:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeadSighting:
-    """Boxes by camera index, what `head_cloud.observations` takes, and whether a face and its distance are in it."""
+    """Boxes by camera index, the input of `head_cloud.observations`, and whether it has a face and a distance."""
 
     boxes: tuple[FaceBox | None, ...]
     parts: list[tuple[Floats, Floats]]
@@ -69,7 +69,7 @@ class HeadSighting:
 
 
 class HeadEvidence:
-    """Keeps each camera's colours of the head."""
+    """Holds each camera's colour model of the head."""
 
     def __init__(
         self, n_cameras: int, cascade: CascadeArrays, stature_m: float, params: HeadParams
@@ -86,7 +86,7 @@ class HeadEvidence:
         self._loss = _USUAL_LOSS
 
     def seen(self, views: Sequence[HeadView], guess: HeadGuess) -> HeadSighting:
-        """Faces about where the head should be, one view after the other, and its distance from pairs."""
+        """Faces near the predicted head in each view, and its distance from pairs of views."""
         boxes: list[FaceBox | None] = [None] * self._n
         parts: list[tuple[Floats, Floats]] = []
         self._turn += 1
@@ -124,7 +124,7 @@ class HeadEvidence:
     def _of_face(
         self, view: HeadView, box: FaceBox, guess: HeadGuess, has_distance: bool
     ) -> list[tuple[Floats, Floats]]:
-        """A face says where the head is across the ray and, unless a pair does, how far by its size."""
+        """A face measures the head's position across the ray and, without a pair, its distance by size."""
         params = self._params
         from_m, ray = ray_through(view, np.array([box.x_px, box.y_px]))
         # where the head is now, not when this picture was taken
@@ -188,7 +188,7 @@ class HeadEvidence:
         )  # fmt: skip
 
     def log_likelihood(self, views: Sequence[HeadView], cloud: Cloud, guess_m: Floats) -> Floats:
-        """Of each particle (P,), by colours, outline and foreground."""
+        """Scores of the particles (P,), by colours, outline and foreground."""
         out = np.zeros(len(cloud.place_m))
         for view in views:
             if are_known(self._colours[view.index]) or view.has_foreground:
@@ -224,7 +224,7 @@ class HeadEvidence:
         return out
 
     def learn_first(self, views: Sequence[HeadView], face: PlacedFace) -> None:
-        """The colours, where a face was found."""
+        """Update the colours in views with a detected face."""
         for view in views:
             outline = ellipse_of(view.camera, face.middle_m, self._size)
             if outline is not None:
@@ -236,7 +236,7 @@ class HeadEvidence:
         self, views: Sequence[HeadView], middle_m: Floats, velocity_m_s: Floats,
         boxes: Sequence[FaceBox | None], dt_s: float,
     ) -> None:  # fmt: skip
-        """The colours, where the head shows its face or is as sure as that."""
+        """Update the colours in views with a face, or with an equally certain head."""
         for view in views:
             at_m = middle_m + view.offset_s * velocity_m_s
             outline = ellipse_of(view.camera, at_m, self._size)

@@ -31,7 +31,7 @@ _SMALL = 4  # by which the foreground is reduced
 _LEAST_SHARE = 0.01  # of a person in the picture
 _TOP_ROWS = 4  # of the reduced foreground; their middle is the crown's
 _DISTANCES = 32
-_LEAST_SCORE = 0.75  # of a head before the background alone, at best 1 and its edge
+_LEAST_SCORE = 0.75  # of a head by the foreground alone; the best is 1 plus its edge
 _TOPS = 3  # sizes that are tried
 _PATCH = 0.7  # of the head's half height
 _SIGMA_SHARE = 0.4  # of a head's half height: how well its outline says where it is
@@ -61,7 +61,7 @@ def outlined_head(
 def _met(
     one: HeadView, a: FaceBox, other: HeadView, b: FaceBox, stature_m: float, params: HeadParams
 ) -> PlacedFace | None:
-    """Where two tops meet in space, each of a head's size there."""
+    """The intersection of two tops in space, where both have a head's size."""
     if one.index == other.index or not have_baseline(one.camera, other.camera):
         return None
     xy = np.stack([normalised(one.camera, _middle(a)), normalised(other.camera, _middle(b))])

@@ -39,4 +39,4 @@ class HeadParams:
     coast_s: float = 0.6  # without a face, colours or distance that agree
     least_support: float = 0.5  # of colours and outline together, at the best place
     facing_s: float = 0.4  # validity of a detected face for the person's facing direction
-    learn_support: float = 0.9  # colours are learned without a face from what is as sure as that
+    learn_support: float = 0.9  # least support for learning colours without a face

@@ -75,7 +75,7 @@ class HeadTracker:
         self.reset()
 
     def reset(self, near_m: Floats | None = None) -> None:
-        """Forget the head; near_m (3,): the middle of one that another tracker knows, to start from."""
+        """Reset; near_m (3,): the head's middle from another tracker, as the start."""
         self._rng = np.random.default_rng(self._seed)
         self._search.reset()
         self._evidence.reset()
@@ -146,8 +146,8 @@ class HeadTracker:
         return replace(self._told(HeadState.TRACKED, of, placed), yaw_rad=None)
 
     def _is_head(self, of: FaceCandidate, placed: PlacedFace) -> bool:
-        """Seen more than once, of a head's size, and at a distance on which a pair agrees; one camera, or two in one
-        place, go by the size."""
+        """True for a face that was detected more than once, has a head's size, and a distance on which a pair agrees. One
+        camera, or two in one place, use the size only."""
         alone = len(self._cameras) == 1 or self._fault is StereoFault.NO_BASELINE
         is_placed = alone or placed.depth is not Depth.SIZE
         often = of.looks >= self._params.least_looks
@@ -196,14 +196,14 @@ class HeadTracker:
         return float(np.arctan2(way[0], way[2]))
 
     def _tracked(self, before: Cloud, views: Sequence[HeadView], dt_s: float) -> HeadTrack | None:
-        """The filter's step; None, and no cloud is left, when nothing has agreed for too long."""
+        """The filter's step; None, and the cloud is dropped, after too long without agreeing evidence."""
         params = self._params
         cloud = predicted(before, dt_s, params, self._rng)
         guess = self._guess(cloud)
         seen = self._evidence.seen(views, guess)
         measured = observations(seen.parts)
         if seen.is_complete and is_far(cloud, measured):
-            # a face and its distance together say where the head is: the particles were drawn away from it
+            # a face with its distance determines the position, but the particles drifted away from it
             cloud = cloud_about(measured, cloud, params, self._rng)
         cloud, log_weight = proposed(cloud, measured, params, self._rng)
         log_weight += self._evidence.log_likelihood(views, cloud, guess.middle_m)
@@ -233,7 +233,7 @@ class HeadTracker:
     def _check_place(
         self, views: Sequence[HeadView], boxes: Sequence[FaceBox | None], dt_s: float
     ) -> None:
-        """A face that only some views still see where it should be is looked for along its ray in the others."""
+        """Search for a face that only some views confirm along its ray in the other views."""
         self._since_check_s += dt_s
         for i, box in enumerate(boxes):
             self._box_age_s[i] = 0.0 if box is not None else self._box_age_s[i] + dt_s
@@ -284,7 +284,7 @@ class HeadTracker:
         )
 
     def _in_reach(self, middle: Floats) -> bool:
-        """Whether some camera sees the place, not too near and not too far."""
+        """True if the place is in view of a camera, not too near and not too far."""
         for camera in self._cameras:
             away_m = float(np.linalg.norm(centre(camera) - middle))
             x, y = project(camera, middle)
@@ -294,11 +294,11 @@ class HeadTracker:
         return False
 
     def _is_doubtful(self, track: HeadTrack | None) -> bool:
-        """Whether what is followed may be no head."""
+        """True if the tracked object may be no head."""
         return track is not None and track.support < self._params.learn_support
 
     def _hand_over(self, track: HeadTrack | None, views: Sequence[HeadView]) -> None:
-        """Follow another face instead, when the tracked head has long shown none and that one is as near."""
+        """Switch to another face when the tracked head has had none for long and the other is as near."""
         if track is None or track.middle_m is None or self._faceless_s < _HAND_OVER_S:
             return
         mine_m = min(float(np.linalg.norm(track.middle_m - centre(c))) for c in self._cameras)

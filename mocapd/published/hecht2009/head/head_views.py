@@ -1,4 +1,4 @@
-"""The pictures of one instant as the head's search and filter take them."""
+"""The pictures of one instant as input of the head's search and filter."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
