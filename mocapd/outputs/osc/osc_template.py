@@ -55,7 +55,7 @@ def bundle_size(messages: Sequence[OscMessage]) -> int:
 def bundle(messages: Sequence[OscMessage]) -> tuple[bytearray, tuple[int, ...]]:
     """One bundle, and the offset of each message's numbers in it [bytes].
 
-    Its time tag is `immediately`: a later one would let receivers delay it.
+    Its time tag means "immediately": a later one would let receivers delay it.
     """
     builder = OscBundleBuilder(IMMEDIATELY)
     for element in messages:
