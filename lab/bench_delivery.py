@@ -78,7 +78,7 @@ def deliver(seconds: float) -> DeliveryTimes:
         for sink in sinks:
             opened.callback(sink.close)
             sink.open()
-            sink.tell(rest)
+            sink.send_state(rest)
         games = {
             "zenoh": _game("zenoh", zenoh_port, opened),
             "osc": _game("osc", osc_port, opened),

@@ -20,9 +20,9 @@ from mocapd.outputs.from_skeleton import rest_skeleton
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.osc.osc_frame import FrameBundles
 from mocapd.outputs.vmc.avatar import Avatar
-from mocapd.outputs.vmc.placing import placing
 from mocapd.outputs.vmc.vmc_encoder import VmcEncoder
 from mocapd.outputs.vmc.vmc_packets import Bundling
+from mocapd.outputs.vmc.vmc_space import vmc_heading
 from mocapd.outputs.vmc.vrm_file import read_vrm
 from mocapd.outputs.wire import SkeletonFrame, encode_msgpack
 from mocapd.types import BodyState, Pose, Tracking
@@ -76,7 +76,7 @@ def encoders(avatar: Avatar | None) -> Mapping[str, Encode]:
     (first,) = moving_frames(1)
     found: dict[str, Encode] = {
         "zenoh, msgpack": encode_msgpack,
-        "osc": FrameBundles(first).filled,
+        "osc": FrameBundles(first).fill,
         "vmc, two bundles": _vmc("two", rest, None),
         "vmc, one bundle": _vmc("one", rest, None),
         "vmc, no bundles": _vmc("off", rest, None),
@@ -87,7 +87,7 @@ def encoders(avatar: Avatar | None) -> Mapping[str, Encode]:
 
 
 def _vmc(bundling: Bundling, rest: RestSkeleton, avatar: Avatar | None) -> Encode:
-    encoder = VmcEncoder(placing(180.0, 5.0, by_root=False), False, bundling, avatar)
+    encoder = VmcEncoder(vmc_heading(180.0, 5.0, by_root=False), False, bundling, avatar)
     return lambda frame: encoder.encode(frame, rest, calibration=3, time_s=1.0)
 
 

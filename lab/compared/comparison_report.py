@@ -4,7 +4,7 @@ from typing import Any
 
 from lab.compared.compare import Comparison
 from lab.compared.roc import Roc, correct_at
-from mocapd.evaluate.report import COLUMNS, groups_by_cameras, mean_known
+from mocapd.evaluate.report import COLUMNS, groups_by_cameras, mean_or_nan
 from mocapd.evaluate.tables import number, table
 
 FALSE_RATES = (0.005, 0.01, 0.02, 0.05, 0.1)
@@ -49,6 +49,6 @@ def _side_by_side(comparison: Comparison, key: str) -> str:
         for results in zip(*columns, strict=True)
     ]
     for groups in zip(*map(groups_by_cameras, columns), strict=True):
-        means = [mean_known([value(result) for result in group]) for _, group in groups]
+        means = [mean_or_nan([value(result) for result in group]) for _, group in groups]
         rows.append([groups[0][0], *(number(mean, digits) for mean in means)])
     return table([title, *comparison], rows)

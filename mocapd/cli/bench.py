@@ -23,7 +23,7 @@ _DEFAULT = "sim:living_room"
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("bench")(bench_command)
 
 
@@ -40,7 +40,7 @@ def bench_command(
         bool, typer.Option("--live", help="Time the real daemon on simulated webcams instead.")
     ] = False,
     watched: Annotated[
-        bool, typer.Option("--watched", help="With --live: somebody looks at its page meanwhile.")
+        bool, typer.Option("--watched", help="With --live: a client watches its page meanwhile.")
     ] = False,
     seconds: Annotated[float, typer.Option(help="How long --live runs [s].", min=1.0)] = 60.0,
     endurance: Annotated[

@@ -10,7 +10,7 @@ from mocapd.errors import usage_errors
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("board")(board)
 
 
@@ -62,10 +62,10 @@ def board(
         )  # fmt: skip
     write_pdf(out, board_pdf(made, paper), force)
     print(flags_of(made))
-    told = f"{out}: print it at 100 % and glue it flat onto something stiff"
+    instructions = f"{out}: print it at 100 % and glue it flat onto something stiff"
     if two_sided:
-        told += (
+        instructions += (
             ", the page BACK on its other side: pins through the crosses of FRONT show where, each cross "
             "on the one of its own letter"
         )
-    typer.echo(told, err=True)
+    typer.echo(instructions, err=True)

@@ -9,7 +9,7 @@ from mocapd.cli.options import CameraOption, ConfigOption, ForceOption, SetOptio
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("calibrate")(calibrate)
 
 

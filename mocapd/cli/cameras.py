@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("cameras")(cameras)
 
 
@@ -69,7 +69,7 @@ def _print_remote(place: str, as_json: bool) -> None:
 
 
 def _with_password(place: str) -> str:
-    """The address, with what a user without a password is asked for: a command line is read by every user."""
+    """The address with a password from a prompt: every user can read a command line."""
     import sys
     from getpass import getpass
     from urllib.parse import quote

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("check-config")(check_config)
 
 
@@ -43,13 +43,13 @@ def check_config(
         _print_calibration(effective.config)
     from mocapd.outputs.output_table import unsafe_outputs
 
-    # a daemon logs those of outputs when it opens them
+    # the daemon itself logs the warnings of outputs when it opens them
     for line in (*unsafe_settings(effective), *unsafe_outputs(effective.config.outputs)):
         print(f"# unsafe: {line}")
 
 
 def _print_calibration(config: "Config") -> None:
-    """What it is, as comments below the settings."""
+    """Print a summary of the calibration as comments below the settings."""
     from mocapd.boundary.urls import without_password
     from mocapd.calibration.calibration_file import find_calibration
 
@@ -61,11 +61,11 @@ def _print_calibration(config: "Config") -> None:
         print(f"# calibration: {used}")
         return
     tables, room = saved.tables, saved.tables.room
-    assert room is not None  # one that is not placed is refused when it is read
-    told = [f"made {tables.made.when:%Y-%m-%d %H:%M} UTC by {tables.made.by}"]
-    told += [f"{room.rms_px:.2f} px"] if room.rms_px is not None else []
-    told += [f"{room.play_area_cm:.1f} cm"] if room.play_area_cm is not None else []
-    print(f"# calibration: {saved.path} ({', '.join(told)})")
+    assert room is not None  # reading refuses a calibration without extrinsics
+    details = [f"made {tables.made.when:%Y-%m-%d %H:%M} UTC by {tables.made.by}"]
+    details += [f"{room.rms_px:.2f} px"] if room.rms_px is not None else []
+    details += [f"{room.play_area_cm:.1f} cm"] if room.play_area_cm is not None else []
+    print(f"# calibration: {saved.path} ({', '.join(details)})")
     for camera in tables.camera:
         width, height = camera.size_px
         source = without_password(camera.source)
@@ -82,7 +82,7 @@ def _print_table(rows: "list[Setting]") -> None:
 
 
 def _plain(value: Any) -> Any:
-    """A value as JSON has it, without passwords."""
+    """A value as JSON, without passwords."""
     from dataclasses import asdict, is_dataclass
 
     from mocapd.boundary.urls import without_password

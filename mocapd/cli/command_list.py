@@ -1,4 +1,4 @@
-"""The commands, one file each. The files import what is heavy only when their command runs."""
+"""The list of commands, one file each. A file imports heavy modules only when its command runs."""
 
 import typer
 
@@ -6,7 +6,7 @@ from mocapd.cli import (
     bench,
     board,
     calibrate,
-    camera_node,
+    camera_node_command,
     cameras,
     check_config,
     demo,
@@ -50,7 +50,7 @@ for command in (
     web_link,
     send_test,
     cameras,
-    camera_node,
+    camera_node_command,
     check_config,
     prepare,
     install_service,

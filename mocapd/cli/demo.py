@@ -19,7 +19,7 @@ SCENARIO = "living_room"
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("demo")(demo)
 
 
@@ -50,12 +50,12 @@ def demo(
 
 
 def watch_command(config: "Config") -> str:
-    """The command line that shows the stream of this configuration, to be pasted anywhere."""
+    """The command line that shows the stream of this configuration, for any terminal."""
     from mocapd.outputs.output_table import ZenohSection, zenoh_section
 
-    beside = Path(sys.executable).parent / "mocapd"
+    own = Path(sys.executable).parent / "mocapd"
     on_path = shutil.which("mocapd")
-    name = "mocapd" if on_path and Path(on_path) == beside else str(beside)
+    name = "mocapd" if on_path and Path(on_path) == own else str(own)
     words = [name, "watch"]
     port = zenoh_section(config.outputs).port
     if port != ZenohSection().port:

@@ -31,7 +31,7 @@ class Joints(StrEnum):
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("eval")(evaluate_captures)
 
 
@@ -92,7 +92,7 @@ def evaluate_captures(
         cases = [open_case(folder, compare=True) for folder in captures]
         resources = cached(effective.cache_dir, progress)
         setting = runs.EvaluationSettings(
-            lambda known: ready_tracker(name, known, resources),
+            lambda calibration: ready_tracker(name, calibration, resources),
             effective.tracker.stature_m,
             joints.value,
             progress,
@@ -112,7 +112,7 @@ def evaluate_captures(
 
 
 def _refuse_moved(option: str, module: str, value: str | bool | None) -> None:
-    """Raises UsageError for an option of the first release that a command of the checkout has now."""
+    """Raises UsageError for an option of the first release that has moved to a command of the source tree."""
     if value:
         raise UsageError(
             f"{option} is no option of `mocapd eval` any more",

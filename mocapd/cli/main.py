@@ -1,20 +1,20 @@
-"""The entry of the command `mocapd`: signals and quiet libraries first, then the command, its exit code."""
+"""Entry point of the command `mocapd`: sets up signals and libraries, runs the command, returns its exit code."""
 
 import os
 import sys
 
 from mocapd.app.daemon.early_signals import SIGINT_EXIT, end_at_once, ended, interruptible
 
-# Read by the libraries while they are imported. A pool of threads costs more than it brings at the
-# sizes met here: one thread per camera, and the libraries at one each.
+# The libraries read these during import. At our array sizes a thread pool costs more than it gains: we use one
+# thread per camera, and one thread in each library.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("MKL_NUM_THREADS", "1")
 
 
 def main() -> None:
-    """Run one command. An expected trouble is one line on stderr; its code is the exit code."""
-    end_at_once(sys.argv)  # before the imports, which take long
+    """Run one command. A MocapdError becomes one line on stderr and its exit code."""
+    end_at_once(sys.argv)  # before the slow imports
 
     import mocapd.capture.environment  # noqa: F401  what cv2 reads while it is imported
     from mocapd.cli.care.completion import ready_to_complete

@@ -1,4 +1,4 @@
-"""The options that commands share, and what they mean for the configuration."""
+"""Common options of the commands, and their effect on the configuration."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,20 +12,20 @@ if TYPE_CHECKING:
 
 
 def complete_setting(incomplete: str) -> list[str]:
-    """What --set may go on with at Tab: keys, and the values of one that has few."""
+    """Completions of --set: keys, and the values of a switch."""
     from mocapd.config.effective import known_keys
 
     key, has_value, _ = incomplete.partition("=")
     if not has_value:
         return [f"{name}=" for name in known_keys() if name.startswith(key)]
-    return [f"{key}={one}" for one in ("true", "false") if _is_switch(key)]
+    return [f"{key}={value}" for value in ("true", "false") if _is_switch(key)]
 
 
 def _is_switch(key: str) -> bool:
     from mocapd.config.effective import known_keys
 
-    found = known_keys().get(key)
-    return found is not None and isinstance(found.default, bool)
+    entry = known_keys().get(key)
+    return entry is not None and isinstance(entry.default, bool)
 
 
 ConfigOption = Annotated[
@@ -70,7 +70,7 @@ VariantOption = Annotated[str | None, typer.Option("--variant", hidden=True)]
 
 
 def refuse_variant(variant: str | None) -> None:
-    """Raises UsageError for the option of earlier versions."""
+    """Raises UsageError for a removed option."""
     from mocapd.config.removed_keys import REMOVED
 
     if variant is not None:
@@ -80,7 +80,7 @@ def refuse_variant(variant: str | None) -> None:
 
 
 def vrm_flags(vrm: Path | None) -> dict[str, str]:
-    """What --vrm means, for `effective_config`."""
+    """The flags of --vrm for `effective_config`."""
     return {} if vrm is None else {"vmc__vrm": str(vrm), "vmc__enabled": "true"}
 
 
@@ -93,15 +93,16 @@ def effective_config(
 ) -> "Effective":
     """The configuration with these flags on top; `flags` are keys with `__` for the dot.
 
-    `capture`: a folder or scenario, whose cameras are taken, all of them.
+    `capture`: a folder or scenario; all of its cameras are used.
     """
     from mocapd.config.effective import load_config
 
-    given = _given(settings)
+    given = _settings_by_key(settings)
     if capture is not None:
         from mocapd.session.session import cameras_of
 
-        given["camera"] = _camera_list([(one.id, one.source) for one in cameras_of(capture)])
+        used = [(camera.id, camera.source) for camera in cameras_of(capture)]
+        given["camera"] = _camera_list(used)
     if cameras:
         given["camera"] = _camera_list([_camera(text) for text in cameras])
     given |= {key.replace("__", "."): value for key, value in flags.items() if value is not None}
@@ -111,17 +112,17 @@ def effective_config(
 def config_to_look_after(
     config: Path | None, settings: list[str] | None
 ) -> "tuple[Effective, MocapdError | None]":
-    """The configuration, for commands that look after a daemon whatever has become of it since: where it cannot be
-    used, what is built in with these flags, and why. Raises ConfigError or UsageError for wrong flags."""
+    """The configuration, for commands that control a running daemon even if its config file has become invalid: then the
+    defaults with these flags, and the error. Raises ConfigError or UsageError for wrong flags."""
     from mocapd.config.effective import load_config
 
     try:
         return effective_config(config, settings), None
     except MocapdError as error:
-        return load_config(_given(settings), env={}, candidates=()), error
+        return load_config(_settings_by_key(settings), env={}, candidates=()), error
 
 
-def _given(settings: list[str] | None) -> dict[str, str]:
+def _settings_by_key(settings: list[str] | None) -> dict[str, str]:
     """The flags --set by their keys. Raises UsageError."""
     given: dict[str, str] = {}
     for text in settings or ():
@@ -140,12 +141,15 @@ def _camera(text: str) -> tuple[str, str]:
 
 
 def _camera_list(cameras: list[tuple[str, str]]) -> str:
-    """As TOML, which is what a flag's text is."""
-    entries = (f"{{id = {_quoted(name)}, source = {_quoted(source)}}}" for name, source in cameras)
+    """As TOML, the format of a flag's value."""
+    entries = (
+        f"{{id = {_toml_string(name)}, source = {_toml_string(source)}}}"
+        for name, source in cameras
+    )
     return f"[{', '.join(entries)}]"
 
 
-def _quoted(text: str) -> str:
+def _toml_string(text: str) -> str:
     import tomli_w
 
     return tomli_w.dumps({"v": text}).removeprefix("v = ").strip()

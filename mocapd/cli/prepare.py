@@ -6,7 +6,7 @@ from mocapd.cli.options import ConfigOption, SetOption, effective_config
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("prepare")(prepare)
 
 

@@ -6,7 +6,7 @@ from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("recenter")(recenter)
 
 
@@ -20,13 +20,13 @@ def recenter(config: ConfigOption = None, settings: SetOption = None) -> None:
     """
     from mocapd.control.meant import daemon_meant
 
-    told = daemon_meant(config_to_look_after(config, settings)[0].config).recenter()
-    side = "left" if told.yaw_deg >= 0.0 else "right"
+    report = daemon_meant(config_to_look_after(config, settings)[0].config).recenter()
+    side = "left" if report.yaw_deg >= 0.0 else "right"
     print(
-        f"forward is {abs(told.yaw_deg):.0f} degrees to the {side} of the room's +Z;"
-        f" told to: {', '.join(told.outputs) or 'no output'}"
+        f"forward is {abs(report.yaw_deg):.0f} degrees to the {side} of the room's +Z;"
+        f" told to: {', '.join(report.outputs) or 'no output'}"
     )
-    if not {"vrchat", "vmt"} & {*told.outputs}:
+    if not {"vrchat", "vmt"} & {*report.outputs}:
         typer.echo(
             "mocapd: neither VRChat nor SteamVR is sent to: set vrchat.enabled = true or vmt.enabled = true",
             err=True,

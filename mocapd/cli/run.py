@@ -29,7 +29,7 @@ _log = logging.getLogger(__name__)
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("run")(run)
 
 
@@ -62,8 +62,8 @@ def run(
 
 
 def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
-    """Run with the configuration that is read, now and whenever it is to be read again, until it ends; the
-    exit code. `hint` is logged once it runs."""
+    """Run the daemon and return its exit code. `read` gives the configuration, now and at each reload. `hint` is logged
+    once the daemon runs."""
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs
 
@@ -89,7 +89,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
     from mocapd.service.open_outputs import OpenOutputs
     from mocapd.service.service import Service
 
-    faulthandler.enable()  # a service manager that waits in vain for a sign of life sends SIGABRT
+    faulthandler.enable()  # the service manager's watchdog sends SIGABRT
     signals = Signals(reloads=True, within_s=END_S)
     notifier = Notifier.of_environment()
     outputs = OpenOutputs(config)
@@ -108,9 +108,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
             page = DaemonPage(service) if config.web.enabled else None
             change = SessionChange(service, read, signals, page, notifier)
             control.attach(service, change.reloads)
-            with (
-                DecoderWarnings()
-            ):  # a thread, so not before whatever is forked for the first start
+            with DecoderWarnings():  # starts a thread, so not before the forks of the first start
 
                 def tell(text: str) -> None:
                     control.preparing(text)
@@ -119,7 +117,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
                 early = EarlyStart(first.preparation, change, tell)
                 hooks = (change, early, control, Supervision(notifier))
                 code = run_daemon(service, signals, hint, hooks, control.what_is_prepared)
-    except SystemExit as end:  # told to end while the first session was still prepared
+    except SystemExit as end:  # a signal ended it during the preparation of the first session
         code = end.code if isinstance(end.code, int) else 0
     finally:
         if page is not None:

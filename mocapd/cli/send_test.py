@@ -9,7 +9,7 @@ from mocapd.errors import UsageError
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("send-test")(send_test_command)
 
 
@@ -29,16 +29,16 @@ def send_test_command(
     settings: SetOption = None,
     vrm: VrmOption = None,
 ) -> None:
-    """Send a person who waves and steps to an output, without cameras: to try firewall and avatar.
+    """Send a waving and stepping person to an output, without cameras: to test firewall and avatar.
 
-    Ends with 0 when it was sent and nothing refused, with 1 when nobody listens. Other machines may not tell.
+    Ends with 0 when it was sent and nothing refused, with 1 when nobody listens. Other machines may not report that.
     With Zenoh, --port listens there for games, and --host joins the router there.
 
     Example: mocapd send-test --output vrchat --host 192.168.1.20
     """
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs
-    from mocapd.outputs.aim import resolved
+    from mocapd.outputs.address_override import resolve_host
     from mocapd.outputs.instance import instance_name
     from mocapd.outputs.output_table import OUTPUTS
 
@@ -51,7 +51,9 @@ def send_test_command(
     prepare_libraries(effective.cache_dir)
     entry, section = OUTPUTS[output], effective.outputs[output]
     if host is not None or port is not None:
-        section = entry.aimed(section, None if host is None else resolved(host), port)
+        section = entry.override_address(
+            section, None if host is None else resolve_host(host), port
+        )
 
     from mocapd.app.terminal.send_test_run import send_test
 

@@ -10,7 +10,7 @@ from mocapd.errors import usage_errors
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("shirt")(shirt)
 
 

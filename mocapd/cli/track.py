@@ -17,14 +17,14 @@ from mocapd.cli.options import (
 
 
 class RoomSeen(StrEnum):
-    """What a recording shows of the empty room."""
+    """The part of a recording for learning the empty room."""
 
     EMPTY = "empty"
     WHOLE = "whole"
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("track")(track)
 
 
@@ -52,8 +52,8 @@ def track(
     room: Annotated[
         RoomSeen,
         typer.Option(
-            help="Where a tracker without the shirt learns the empty room: before anybody comes, or from the "
-            "whole recording, for one that shows somebody from its first frame on.",
+            help="Where a tracker without the shirt learns the empty room: from the frames before a person comes, or "
+            "from the whole recording, if it has a person from the first frame on.",
         ),
     ] = RoomSeen.EMPTY,
     force: ForceOption = False,
@@ -99,14 +99,14 @@ def track(
     with ProgressBars() as progress:
         origin = open_origin(str(capture), effective.cache_dir, progress)
         if calibration is None:
-            known = from_origin(origin)
+            setup = from_origin(origin)
         else:
             saved = load_calibration(calibration_path(calibration))
-            known = calibration_of_recording(saved, origin)
-        checked = check_capture(origin, known.rig, known.wearer.stature_m)
+            setup = calibration_of_recording(saved, origin)
+        checked = check_capture(origin, setup.rig, setup.wearer.stature_m)
         ready = ready_tracker(
             own.name,
-            known.assuming(own.stature_m),
+            setup.assuming(own.stature_m),
             cached(effective.cache_dir, progress, own.tracking),
         )
         if room is RoomSeen.WHOLE:

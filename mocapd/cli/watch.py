@@ -17,7 +17,7 @@ SHOWN = ("head", "leftHand", "rightHand", "hips")
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("watch")(watch)
 
 
@@ -75,8 +75,8 @@ def link_of(
     instance: str = "*",
     timeout_s: float = 2.0,
 ) -> "Link":
-    """To a daemon, or the router that it joined; endpoint: that of this configuration when None. With the certificate of the
-    configuration, and as the first user of its password file: whoever may read these may listen."""
+    """Zenoh parameters for a client of a daemon or its router; endpoint: None: that of this configuration. Uses the
+    configuration's certificate and the first user of its password file."""
     from mocapd.client import Link
     from mocapd.outputs.zenoh.zenoh_config import listen_endpoints
     from mocapd.outputs.zenoh.zenoh_password_file import first_login

@@ -7,7 +7,7 @@ from mocapd.errors import ConfigError
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("web-link")(web_link)
 
 

@@ -1,1 +1,1 @@
-"""How good a tracker is: recorded captures are tracked and held against their ground truth."""
+"""Evaluation of trackers: tracks recorded captures and compares them with their ground truth."""

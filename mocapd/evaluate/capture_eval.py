@@ -1,4 +1,4 @@
-"""Track one capture, every frame, and score the track."""
+"""Tracks every frame of one capture, and scores the track."""
 
 import time
 from collections.abc import Callable, Container
@@ -26,7 +26,7 @@ BuildTracker = Callable[[Calibration], ReadyTracker]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evidence:
-    """What a tracker said of the colours of one frame: ids (h,w) over roi_px = x0, y0, x1, y1."""
+    """A tracker's colour classification of one frame: ids (h,w) over roi_px = x0, y0, x1, y1."""
 
     ids: Bytes
     roi_px: tuple[int, int, int, int]
@@ -34,7 +34,7 @@ class Evidence:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Case:
-    """A capture that is there, with its ground truth read. checked: where it was compared with what it shows."""
+    """A capture with its ground truth. checked: the check of rig and times against the pictures, if it was done."""
 
     folder: CaptureFolder
     truth: Truth
@@ -63,7 +63,7 @@ class CaptureResult:
 
 
 class _TimedTracker:
-    """A tracker with a stopwatch; keeps its evidence of the frames asked for."""
+    """A tracker with a stopwatch that stores its evidence of the requested frames."""
 
     def __init__(self, tracker: Tracker, keep: Container[int]) -> None:
         self.name = tracker.name
@@ -88,8 +88,8 @@ class _TimedTracker:
 
 
 def open_case(capture: Path, compare: bool = False) -> Case:
-    """Read a capture and its truth; `compare`: its rig and times with what it shows, too. Raises InputError or ConfigError
-    naming the file."""
+    """Read a capture and its truth; `compare`: also check its rig and times against the pictures. Raises InputError or
+    ConfigError naming the file."""
     folder, truth = load_folder(capture), load_truth(capture)
     return Case(folder, truth, check_capture(FolderOrigin(folder)) if compare else None)
 
@@ -105,8 +105,8 @@ def evaluate(
 ) -> CaptureResult:
     """Track a capture from its first frame to its last, and score it.
 
-    `stature_m` is for captures that do not say. What the tracker is given is what `mocapd track`
-    gives it: the rig, the videos, the stature and the user's strokes, and never the truth.
+    `stature_m` is the default for captures without one. The tracker gets the same input as in
+    `mocapd track`: the rig, the videos, the stature and the user's strokes, never the truth.
     """
     ready = build(from_capture(case.folder).assuming(stature_m))
     watched = _TimedTracker(ready.tracker, keep_evidence)

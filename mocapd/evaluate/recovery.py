@@ -1,4 +1,4 @@
-"""How long a change of the light, or what hides the person, throws the tracker off."""
+"""Recovery time of a tracker after a change of light or an occlusion."""
 
 import math
 
@@ -10,7 +10,9 @@ from mocapd.session.offline import RecordedTrack
 from mocapd.types import Floats
 
 LIMIT_M = 0.06
-CLEAR_LIMIT_M = 0.10  # of whole bodies that were hidden, the best of which are off by more
+CLEAR_LIMIT_M = (
+    0.10  # after an occlusion of the whole body, where even good tracks have larger errors
+)
 STEADY_FRAMES = 3
 # An error that rises later than this after the change has another cause, such as a fast throw.
 _BLAMED_FRAMES = 10
@@ -32,9 +34,9 @@ def frame_errors_m(truth: Truth, track: RecordedTrack, joints: str = "upper") ->
 def recovery_frames(errors_m: Floats, limit_m: float = LIMIT_M, for_good: bool = False) -> float:
     """Frames until the error is back under the limit, of errors_m (N,) from the change on.
 
-    0 when it never left in the frames after the change that can be blamed on it, infinite when it
-    did not come back. Back means under the limit for three frames, or to the end of the recording. for_good: to the end
-    alone, and 0 when it never left at all.
+    0 when it did not exceed the limit shortly after the change, infinite when it did not recover. Recovered means under
+    the limit for three frames, or to the end of the recording. for_good: only to the end, and 0 when it never exceeded
+    the limit.
     """
     over = ~(errors_m < limit_m)
     if for_good:
@@ -51,8 +53,8 @@ def recovery_frames(errors_m: Floats, limit_m: float = LIMIT_M, for_good: bool =
 
 
 def recovery(truth: Truth, track: RecordedTrack, joints: str = "upper") -> float | None:
-    """`recovery_frames` after the capture's change of light, or since nothing hides the person any more, whose
-    limit is 10 cm, and for good; None when its light is steady and nothing ever did."""
+    """`recovery_frames` after the capture's change of light, or after the end of its occlusion, with a limit of 10 cm to
+    the end; None for a capture with neither."""
     since_s = truth.light_change_s if truth.clear_s is None else truth.clear_s
     if since_s is None:
         return None

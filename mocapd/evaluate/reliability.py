@@ -1,4 +1,4 @@
-"""What a confidence is worth: the errors of the joints that a tracker believed so much."""
+"""Reliability of the confidence: the joints' errors over their confidence."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,13 +10,13 @@ from mocapd.evaluate.score import JOINT_SETS, joint_errors_m, match
 from mocapd.types import Floats, Ints
 
 TENTHS = 10
-NEAR_CM = 5.0  # what a game may take for right
+NEAR_CM = 5.0  # error that is acceptable for a game
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reliability:
-    """Of the joints in each tenth of confidence (10,), lowest first: how many there were, their RMS error, and the
-    share (0..1) within NEAR_CM; NaN where there were none."""
+    """For each tenth of confidence (10,), lowest first: the number of joints, their RMS error, and the share (0..1) within
+    NEAR_CM; NaN without joints."""
 
     count: Ints
     rms_cm: Floats
@@ -24,10 +24,10 @@ class Reliability:
 
 
 def reliability(results: Sequence[CaptureResult], joints: str = "upper") -> Reliability:
-    """Of all captures together. Raises InputError when a track lacks one of the joints."""
-    told = [_confidence_and_error(result, joints) for result in results]
-    confidence = np.concatenate([c.ravel() for c, _ in told])
-    error_cm = np.concatenate([e.ravel() for _, e in told])
+    """The reliability over all captures together. Raises InputError when a track lacks one of the joints."""
+    pairs = [_confidence_and_error(result, joints) for result in results]
+    confidence = np.concatenate([c.ravel() for c, _ in pairs])
+    error_cm = np.concatenate([e.ravel() for _, e in pairs])
     tenth = np.clip((confidence * TENTHS).astype(int), 0, TENTHS - 1)
     count = np.bincount(tenth, minlength=TENTHS)
     with np.errstate(invalid="ignore"):

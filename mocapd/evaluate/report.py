@@ -36,14 +36,14 @@ def score_table(results: Sequence[CaptureResult]) -> str:
         for result in results
     ]
     for name, group in groups_by_cameras(results):
-        means = [mean_known([value(result) for result in group]) for _, _, _, value in COLUMNS]
+        means = [mean_or_nan([value(result) for result in group]) for _, _, _, value in COLUMNS]
         digits = [max(digits, 1) for _, _, digits, _ in COLUMNS]
         rows.append([name, *map(number, means, digits)])
     return table(["capture", *(title for _, title, _, _ in COLUMNS)], rows)
 
 
 def score_json(results: Sequence[CaptureResult]) -> dict[str, Any]:
-    """The same, and the error of each joint; null is "nothing to tell", "never" for no recovery."""
+    """The same, and the error of each joint; null: not applicable, "never": no recovery."""
     captures = [
         {
             "capture": result.case.name,
@@ -58,7 +58,7 @@ def score_json(results: Sequence[CaptureResult]) -> dict[str, Any]:
         for result in results
     ]
     means = {
-        name: {key: _plain(mean_known([value(r) for r in group])) for key, _, _, value in COLUMNS}
+        name: {key: _plain(mean_or_nan([value(r) for r in group])) for key, _, _, value in COLUMNS}
         for name, group in groups_by_cameras(results)
     }
     return {"captures": captures, "means": means}
@@ -81,7 +81,7 @@ def reliability_table(of: Reliability) -> str:
 
 
 def groups_by_cameras(results: Sequence[CaptureResult]) -> list[tuple[str, list[CaptureResult]]]:
-    """Captures with as many cameras, where there is more than one."""
+    """Groups of two or more captures with the same number of cameras."""
     out = []
     for cameras in sorted({len(result.case.folder.cameras) for result in results}, reverse=True):
         group = [r for r in results if len(r.case.folder.cameras) == cameras]
@@ -90,10 +90,10 @@ def groups_by_cameras(results: Sequence[CaptureResult]) -> list[tuple[str, list[
     return out
 
 
-def mean_known(values: Sequence[float | None]) -> float:
-    """Of what there is to tell; NaN if one of them was not tracked at all, or none tells anything."""
-    known = [value for value in values if value is not None]
-    return float(np.mean(known)) if known else float("nan")
+def mean_or_nan(values: Sequence[float | None]) -> float:
+    """The mean of the values that are not None; NaN if one of them is NaN (not tracked), or all are None."""
+    numbers = [value for value in values if value is not None]
+    return float(np.mean(numbers)) if numbers else float("nan")
 
 
 def _plain(value: float | None) -> float | str | None:

@@ -1,4 +1,4 @@
-"""Every capture with one tracker."""
+"""Runs one tracker on every capture."""
 
 from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass
@@ -10,8 +10,8 @@ from mocapd.session.tracker_setup import Progress
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EvaluationSettings:
-    """What holds for every capture. `stature_m` is for those that do not say; `progress` hears what is being done, how
-    far, and how far it goes."""
+    """Settings for all captures. `stature_m`: the default for captures without one; `progress`: gets the task, the steps
+    done, and of all."""
 
     build: BuildTracker
     stature_m: float
@@ -30,8 +30,8 @@ def run(
     method: str = "",
     keep_evidence: Callable[[Case], Container[int]] = _no_frames,
 ) -> list[CaptureResult]:
-    """One result per capture. `method` is a label for the progress; `keep_evidence` names the frames of a capture whose
-    evidence is kept."""
+    """One result per capture. `method`: a label for the progress; `keep_evidence`: the frames of a capture for which the
+    evidence is stored."""
     return [
         evaluate(
             case,

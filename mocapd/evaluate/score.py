@@ -50,7 +50,7 @@ ANGLE_SETS: Mapping[str, tuple[Angle, ...]] = MappingProxyType(
     }
 )
 
-CONFIDENT = 0.4  # from this confidence on a game may believe a joint
+CONFIDENT = 0.4  # least confidence of a reliable joint
 SKIP_S = 0.5  # ignored after the person first appears
 TOLERANCE_S = 1 / 60  # largest time difference of a match
 _GHOST_TOLERANCE_S = 1e-3
@@ -58,8 +58,7 @@ _GHOST_TOLERANCE_S = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Matches:
-    """The frames to be scored, rows (N,) of the truth, and of those tracked, K, the row in the truth
-    and the row in the track."""
+    """The frames to score, rows (N,) of the truth; for the K tracked ones the rows in the truth and in the track."""
 
     rows: Ints
     truth_rows: Ints
@@ -72,9 +71,8 @@ class Score:
 
     coverage: share of the frames with the person that were tracked; ghost_frames: tracked frames
     before the person came; jitter: median second difference of the joints from frame to frame,
-    absolute and as a ratio to that of the truth; step_error: how far a joint moves from frame to frame beyond
-    its true motion; confident, doubtful: the joints of confidence CONFIDENT and more, and the others, by their share
-    and their errors.
+    absolute and as a ratio to that of the truth; step_error: a joint's motion from frame to frame in excess of its true
+    motion; confident, doubtful: share and errors of the joints of confidence CONFIDENT or more, and of the others.
     """
 
     frames: int
@@ -112,7 +110,7 @@ def joint_errors_m(
     truth: Truth, track: RecordedTrack, matches: Matches, joints: str = "upper"
 ) -> Floats:
     """Distances (K,J) [m] of the joints in the matched frames."""
-    a, b = _matched(truth, track, matches, joints)
+    a, b = _matching_joints(truth, track, matches, joints)
     errors: Floats = np.linalg.norm(a - b, axis=2)
     return errors
 
@@ -120,7 +118,7 @@ def joint_errors_m(
 def score(truth: Truth, track: RecordedTrack, joints: str = "upper") -> Score:
     """Score the joints of a set of JOINT_SETS. Raises InputError when the track lacks one."""
     matches = match(truth, track, joints)
-    a, b = _matched(truth, track, matches, joints)
+    a, b = _matching_joints(truth, track, matches, joints)
     error_cm = 100.0 * np.linalg.norm(a - b, axis=2)
     tracked = len(matches.truth_rows) > 0
     nan = float("nan")
@@ -163,14 +161,16 @@ def interior_angle_deg(joints_m: Floats, names: Sequence[str], angle: Angle) -> 
     return degrees
 
 
-def _columns(names: Sequence[str], joints: str, whose: str) -> list[int]:
+def _columns(names: Sequence[str], joints: str, source: str) -> list[int]:
     missing = [name for name in JOINT_SETS[joints] if name not in names]
     if missing:
-        raise InputError(f"{whose} lacks the joints {', '.join(missing)}", fix="score other joints")
+        raise InputError(
+            f"{source} lacks the joints {', '.join(missing)}", fix="score other joints"
+        )
     return [list(names).index(name) for name in JOINT_SETS[joints]]
 
 
-def _matched(
+def _matching_joints(
     truth: Truth, track: RecordedTrack, matches: Matches, joints: str
 ) -> tuple[Floats, Floats]:
     """Joints (K,J,3) of truth and track in the matched frames."""
@@ -189,7 +189,7 @@ def _ghosts(truth: Truth, track: RecordedTrack, joints: str) -> int:
 
 
 def _angle_error_deg(truth: Truth, track: RecordedTrack, matches: Matches, joints: str) -> float:
-    # from the whole body: the angles of the arms and the legs need the neck, which is in neither
+    # from the whole body: the angles of arms and legs need the neck, which is in neither set
     true, tracked = truth.joints_m[matches.truth_rows], track.joints_m[matches.track_rows]
     errors = [
         interior_angle_deg(true, truth.names, angle)

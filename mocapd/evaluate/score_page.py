@@ -58,7 +58,7 @@ def page(results: Sequence[CaptureResult], tracker: str, joints: str, command: s
 
 
 def check_page(directory: Path, force: bool) -> None:
-    """For before a long run: raises CannotCreateError for a file that is there and must stay."""
+    """Check before a long run: raises CannotCreateError for an existing file that must not be replaced."""
     for name, kind in ((PAGE, PAGE_KIND), (RELIABILITY_PLOT, PNG)):
         OutputFile(directory / name, kind, force).check_replaceable()
 
@@ -79,7 +79,7 @@ def write_page(
 def write_plot(
     directory: Path, results: Sequence[CaptureResult], joints: str, force: bool = False
 ) -> Path:
-    """The plot of errors over confidence, beside the page. Raises CannotCreateError."""
+    """Write the plot of errors over confidence into the page's folder. Raises CannotCreateError."""
     # matplotlib takes a second to import
     from mocapd.evaluate.plots import reliability_plot, save
 

@@ -1,4 +1,4 @@
-"""Tables of text that read well in a terminal and are Markdown at once."""
+"""Text tables for a terminal that are also valid Markdown."""
 
 import math
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def number(value: float | None, digits: int) -> str:
-    """`-` where there is nothing to tell, `never` for what did not happen."""
+    """The number; `-` for None or NaN, `never` for infinity."""
     if value is None or math.isnan(value):
         return "-"
     return "never" if math.isinf(value) else f"{value:.{digits}f}"

@@ -19,8 +19,8 @@ _RESTORE = "copy the capture again"
 @dataclass(frozen=True, slots=True, eq=False)
 class Truth:
     """times_s (F,): middle of the exposure since the capture's start [s]; joints_m (F,J,3) [m, world],
-    NaN while nobody is there; visible (F,); light_change_s: when a lamp goes out, None if none does; clear_s: from
-    when on nothing hides the person any more, None if that is not known."""
+    NaN without a person; visible (F,); light_change_s: when a lamp goes out, None if none does; clear_s: the end of the
+    occlusion, None if unknown."""
 
     names: tuple[str, ...]
     times_s: Floats

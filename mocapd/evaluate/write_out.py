@@ -1,4 +1,4 @@
-"""A page's text or plot, written with the folder that it is for."""
+"""Writes a page's text or plot, and creates its folder."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ PAGE_KIND = FileKind("a page", lambda head: head.startswith(b"# "))
 
 
 def write_out(path: Path, data: str | bytes, force: bool = False) -> None:
-    """A page or a PNG. Raises CannotCreateError."""
+    """Write a page or a PNG. Raises CannotCreateError."""
     kind = PNG if isinstance(data, bytes) else PAGE_KIND
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -9,7 +9,7 @@ from mocapd.outputs.wire import SkeletonFrame
 
 @dataclass(frozen=True, slots=True)
 class SinkStatus:
-    """`listeners`: how many listen, -1 where the protocol cannot tell; `detail`: one line for the status view."""
+    """`listeners`: number of listeners, -1 where the protocol does not show it; `detail`: one line for the status view."""
 
     sent: int
     refused: int
@@ -18,8 +18,7 @@ class SinkStatus:
 
 
 class Sink(Protocol):
-    """One output. `send` is called from one thread, `tell` from any, also before `open`; nobody listening is a
-    state, not an error."""
+    """One output. One thread calls `send`; any thread calls `send_state`, also before `open`. No listener is no error."""
 
     name: str
 
@@ -31,15 +30,12 @@ class Sink(Protocol):
         """Send one frame; never blocks longer than a millisecond or two."""
         ...
 
-    def tell(self, message: StateMessage) -> None:
-        """Take note of a state, of which the newest holds; one that has no use for it does nothing.
-
-        As quick as `send`.
-        """
+    def send_state(self, message: StateMessage) -> None:
+        """Send or store the newest state; a sink without a use for it ignores it. As quick as `send`."""
         ...
 
     def status(self) -> SinkStatus: ...
 
     def close(self) -> None:
-        """Let go; may be called twice."""
+        """Release everything; may be called twice."""
         ...

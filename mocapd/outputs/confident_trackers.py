@@ -1,9 +1,9 @@
-"""Which trackers are sent: those whose bones are seen. One that only follows another bone is not.
+"""Selects the trackers to send by the confidence of their bones, with hysteresis.
 
-VRChat and SteamVR cannot be told of doubt: a tracker that is sent is believed, and of one that is not sent the avatar's
-own animation does better than a guess of ours. A bone that a tracker of mocapd does not look at, as the legs of somebody
-in the shirt, has a confidence of 0; one that a single camera sees, some 0.2 to 0.5: its place is 10 cm off, its way of
-moving is right. It begins below those, and ends well below, as every begin and end is seen on the avatar.
+VRChat and SteamVR have no field for confidence: they believe every tracker they receive. For a missing tracker the
+avatar's own animation does better than our guess. A bone without evidence (the legs, for the shirt tracker) has a
+confidence of 0. A bone in one camera's view has 0.2 to 0.5: its position is 10 cm off, its motion is right. The upper
+threshold lies below that range, the lower one well below, because the avatar shows every start and stop.
 """
 
 from collections.abc import Mapping
@@ -16,29 +16,29 @@ ENDS_BELOW = 0.07  # a predicted pose falls below within a fifth of a second
 
 
 class ConfidentTrackers:
-    """Keeps which of these are sent. For one thread."""
+    """The current selection. For one thread."""
 
     def __init__(self, trackers: tuple[WornTracker, ...]) -> None:
         self._trackers = trackers
         self.sent: tuple[WornTracker, ...] = ()
 
     def update(self, frame: SkeletonFrame) -> tuple[WornTracker, ...]:
-        """Those that are sent with this frame, by number; none when it is lost."""
+        """The trackers to send with this frame; none when it is lost."""
         joints, before = frame.joints, self.sent
         self.sent = tuple(
-            one
-            for one in self._trackers
-            if _confidence(one, joints) > (ENDS_BELOW if one in before else BEGINS_ABOVE)
+            tracker
+            for tracker in self._trackers
+            if _confidence(tracker, joints) > (ENDS_BELOW if tracker in before else BEGINS_ABOVE)
         )
         return self.sent
 
     @property
     def missing(self) -> tuple[WornTracker, ...]:
-        """Those that are wanted and were not sent last."""
-        return tuple(one for one in self._trackers if one not in self.sent)
+        """The trackers that are not in the current selection."""
+        return tuple(tracker for tracker in self._trackers if tracker not in self.sent)
 
 
 def _confidence(tracker: WornTracker, joints: Mapping[str, Joint]) -> float:
-    """Of the less known of its bones; 0 where there is none."""
+    """The lower confidence of its two bones; 0 where a bone is missing."""
     place, turn = joints.get(tracker.place), joints.get(tracker.turn)
     return 0.0 if place is None or turn is None else min(place.c, turn.c)

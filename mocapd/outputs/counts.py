@@ -1,4 +1,4 @@
-"""Counters in messages: they saturate, so that every message that can be made can also be encoded.
+"""Saturating counters in messages: every message can be encoded.
 
 msgpack and JSON hold integers up to 64 bits, JavaScript and Godot up to 2^53; Python's have no limit.
 """

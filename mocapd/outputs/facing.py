@@ -4,22 +4,22 @@ import math
 
 from mocapd.outputs.wire import SkeletonFrame
 
-SEEN_ABOVE = 0.15  # confidence
-_OWN = 0.75  # of the upper chest's confidence: a head of less only follows it, see the trackers
-_LEVEL = 0.3  # of the forward direction, at least this much must be level [share]; else it says little of the yaw
-# who is asked to look ahead does so with head and body: the first of these that is seen
-_BONES = ("head", "upperChest", "hips")
+_MIN_CONFIDENCE = 0.15  # confidence
+# of the upper chest's confidence: below, the head has no evidence of its own and only follows the chest
+_OWN = 0.75
+_LEVEL = 0.3  # least horizontal length of the unit forward vector; below, the yaw is ill-defined
+_BONES = ("head", "upperChest", "hips")  # the first confident one gives the yaw
 
 
 def facing_yaw_rad(frame: SkeletonFrame) -> float | None:
-    """The turn about +Y that takes +Z to where the person looks [rad]: positive to its left, towards +X.
+    """The rotation about +Y from +Z to the person's forward direction [rad]: positive to the person's left, towards +X.
 
-    None when nothing is seen that would tell.
+    None when no bone is confident enough.
     """
     chest = frame.joints.get("upperChest")
     for name in _BONES:
         joint = frame.joints.get(name)
-        if joint is None or joint.c <= SEEN_ABOVE:
+        if joint is None or joint.c <= _MIN_CONFIDENCE:
             continue
         if name == "head" and chest is not None and joint.c < _OWN * chest.c:
             continue

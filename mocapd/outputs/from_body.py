@@ -10,7 +10,7 @@ from mocapd.body.skeleton import local_from_global
 from mocapd.outputs.wire import SCHEMA, Joint, SkeletonFrame
 from mocapd.types import BodyState, Floats, Skeleton, Tracking
 
-_DIGITS = 4  # of an uncertainty in metres: what is beyond says nothing
+_DIGITS = 4  # of an uncertainty in metres; further digits are noise
 
 
 def skeleton_frame(

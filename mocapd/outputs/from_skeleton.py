@@ -1,11 +1,12 @@
-"""From a skeleton to its message, and when it has changed enough to be told again. Pure."""
+"""The rest-skeleton message of a skeleton, and the test whether a change is worth a new message. Pure."""
 
 import numpy as np
 
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.types import Skeleton
 
-NOTICEABLE_M = 0.005  # that a joint of the T-pose has moved; what is learned while tracking goes on for ever [m]
+# least change of a joint of the T-pose that is sent again [m]; the shape estimate never stops changing
+NOTICEABLE_M = 0.005
 
 
 def rest_skeleton(
@@ -24,9 +25,8 @@ def rest_skeleton(
     )
 
 
-def is_noticeable(told: Skeleton, now: Skeleton) -> bool:
-    """Whether a receiver of the first would see that it is not the second: other bones, or a joint that is
-    elsewhere by NOTICEABLE_M and more."""
-    if told.names != now.names or not np.array_equal(told.parents, now.parents):
+def is_noticeable(sent: Skeleton, current: Skeleton) -> bool:
+    """True if the skeletons differ for a receiver: in bones, or in a joint's position by NOTICEABLE_M or more."""
+    if sent.names != current.names or not np.array_equal(sent.parents, current.parents):
         return True
-    return bool(np.abs(now.rest_m - told.rest_m).max() >= NOTICEABLE_M)
+    return bool(np.abs(current.rest_m - sent.rest_m).max() >= NOTICEABLE_M)

@@ -1,4 +1,4 @@
-"""The body of an HTTP answer of somebody who is not trusted, read by Python's own client."""
+"""Reads the body of an HTTP answer from an untrusted server, with Python's own client."""
 
 from http.client import HTTPException
 from typing import Protocol
@@ -6,14 +6,14 @@ from typing import Protocol
 
 class _Answer(Protocol):
     def read(self, most: int, /) -> bytes:
-        """At most so many bytes."""
+        """At most `most` bytes."""
         ...
 
 
 def read_body(answer: _Answer, most: int) -> bytes:
-    """At most so many bytes of it. Raises OSError or HTTPException."""
+    """At most `most` bytes of the body. Raises OSError or HTTPException."""
     try:
         return answer.read(most)
     except (ValueError, OverflowError) as error:
-        # the client believes the length that a chunk says: fewer than no bytes, or more than can be asked for
-        raise HTTPException(f"a chunk of a length that cannot be ({error})") from None
+        # the client trusts the length of a chunk, which may be negative or too large for `read`
+        raise HTTPException(f"a chunk has an impossible length ({error})") from None

@@ -5,7 +5,7 @@ import socket
 
 
 def chunk(name: str) -> str:
-    """A name as one chunk of a key: what Zenoh gives a meaning to (`/ * $ ? # @`) becomes `_`.
+    """A name as one chunk of a key: characters with a meaning in Zenoh (`/ * $ ? # @`) become `_`.
 
     Names of letters, digits, `_`, `.` and `-` stay as they are; an empty name becomes `_`.
     """
@@ -13,5 +13,5 @@ def chunk(name: str) -> str:
 
 
 def instance_name(given: str = "") -> str:
-    """The name of a daemon that was given this one; the machine's where it was given none."""
+    """The daemon's name: the given one, or else the machine's."""
     return chunk(given or socket.gethostname())

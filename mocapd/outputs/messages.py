@@ -1,4 +1,4 @@
-"""State, of which the newest holds: health, cameras, calibration, rest skeleton, what is forward; as on the wire."""
+"""State messages as on the wire: health, cameras, calibration, rest skeleton, facing. The newest one is valid."""
 
 from typing import Annotated
 
@@ -27,7 +27,7 @@ class OutputHealth(CountingMessage, frozen=True):
 
 
 class Health(CountingMessage, frozen=True):
-    """How the daemon fares, about once a second."""
+    """Health of the daemon, about once a second."""
 
     instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
     version: Annotated[str, Meta(description="version of mocapd")]
@@ -97,7 +97,7 @@ class CameraStatus(CountingMessage, frozen=True):
 
 
 class CalibratedCamera(msgspec.Struct, frozen=True):
-    """A lens and where it stands: x_camera = R x_world + t, OpenCV axes."""
+    """Intrinsics and extrinsics: x_camera = R x_world + t, OpenCV axes."""
 
     name: Annotated[str, Meta(description="name of the camera in the rig")]
     size_px: Annotated[tuple[int, int], Meta(description="width, height of the calibration [px]")]
@@ -130,8 +130,8 @@ class CalibrationInfo(msgspec.Struct, frozen=True):
 class RestSkeleton(msgspec.Struct, frozen=True):
     """One person's skeleton in the T-pose, so that a receiver can build it before the first frame.
 
-    Lists side by side, parents by number and before their children, -1 at the root: what engines take
-    (Godot's and Unreal's bone arrays, the nodes of glTF), and one pass in order poses the whole of it.
+    Parallel lists, parents by index and before their children, -1 at the root: the form that engines take (Godot's and
+    Unreal's bone arrays, the nodes of glTF). One pass in order poses the whole skeleton.
     """
 
     instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
@@ -157,9 +157,9 @@ class RestSkeleton(msgspec.Struct, frozen=True):
 
 
 class Facing(msgspec.Struct, frozen=True):
-    """Which way one person faced when somebody said that this is forward (`mocapd recenter`).
+    """One person's facing direction at the last `mocapd recenter`, to be shown as forward.
 
-    The frames go on in the world's axes: who wants the person to face forward turns what it shows.
+    Frames stay in the world's axes: a receiver that wants the person to face forward rotates them itself.
     """
 
     instance: Annotated[str, Meta(description="name of the sending daemon, as in the key")]
@@ -178,7 +178,7 @@ StateMessage = Health | CameraStatus | CalibrationInfo | RestSkeleton | Facing
 
 
 def subject(message: StateMessage) -> tuple[str, str]:
-    """What a message is about: of messages about the same, the newest holds alone."""
+    """What a message describes: a newer message replaces an older one with the same subject."""
     match message:
         case CameraStatus(camera=camera):
             return message.schema, camera
@@ -189,12 +189,12 @@ def subject(message: StateMessage) -> tuple[str, str]:
 
 
 def decode_health(payload: bytes, encoding: str) -> Health:
-    """A payload back to a Health; fields of later additions to v1 are skipped. Raises InputError."""
+    """Decode a Health; unknown fields (later additions to v1) are skipped. Raises InputError."""
     return decode_message(payload, encoding, Health, HEALTH)
 
 
 def decode_rest_skeleton(payload: bytes, encoding: str) -> RestSkeleton:
-    """A payload back to a rest skeleton; fields of later additions to v1 are skipped. Raises InputError."""
+    """Decode a rest skeleton; unknown fields (later additions to v1) are skipped. Raises InputError."""
     rest = decode_message(payload, encoding, RestSkeleton, REST_SKELETON)
     if not (
         len(rest.names) == len(rest.parents) == len(rest.offsets_m)

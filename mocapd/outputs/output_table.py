@@ -1,4 +1,4 @@
-"""The outputs that exist: one line each in OUTPUTS, whose section of the configuration has the same name."""
+"""The table of outputs: one entry each in OUTPUTS; its section of the configuration has the same name."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any, Protocol
 
 from mocapd.errors import ConfigError
-from mocapd.outputs.aim import address_text, aimed_by_destination
+from mocapd.outputs.address_override import address_text, override_destination
 from mocapd.outputs.base import Sink
 from mocapd.outputs.osc import osc_sink
 from mocapd.outputs.prediction.predicted_sink import PredictedSink
@@ -23,7 +23,7 @@ NOT_PREDICTED = PredictionParams()
 
 
 class OutputSection(Protocol):
-    """What a user may set of an output; a frozen dataclass whose docstring has the words for each key."""
+    """A user's settings of an output: a frozen dataclass whose docstring describes each key."""
 
     @property
     def enabled(self) -> bool: ...
@@ -80,37 +80,36 @@ class VmtSection(vmt_sink.Params):
     enabled: bool = False
 
 
-def _unlimited(_section: Any) -> float:
-    """It sends as often as it is given a frame."""
+def _no_limit(_section: Any) -> float:
+    """The output sends every frame."""
     return math.inf
 
 
 def _own_rate(section: VmcSection | VRChatSection) -> float:
-    """It drops what comes faster than its own rate."""
+    """The output drops frames above its own rate."""
     return section.rate_hz
 
 
 def _safe(_section: Any) -> tuple[str, ...]:
-    """It has no unsafe settings."""
+    """The output has no unsafe settings."""
     return ()
 
 
 @dataclass(frozen=True, slots=True)
 class OutputEntry:
-    """`section`: its keys; `build`: the sink from its section and the daemon's name, imported only then.
+    """`section`: its settings; `build`: makes the sink from its section and the daemon's name, importing it then.
 
-    `blocks`: whether `send` or `tell` may take longer than a millisecond or two: then it gets a thread of
-    its own; `unsafe`: a line for each setting that is permitted and yet unsafe; `aimed`: its section, but to
-    one host (a numeric address) and port, None where the section says it; `limit_hz`: how many frames a second
-    it sends at most [Hz].
+    `blocks`: True if `send` or `send_state` may take longer than two milliseconds: the sink then gets its own thread.
+    `unsafe`: one warning for each permitted but unsafe setting. `override_address`: the section with another host
+    (numeric) and port, None: unchanged. `limit_hz`: the output's own highest rate [Hz].
     """
 
     section: Callable[[], OutputSection]
     build: Callable[[Any, str], Sink]
     blocks: bool
     unsafe: Callable[[Any], tuple[str, ...]] = _safe
-    aimed: Callable[[Any, str | None, int | None], Any] = aimed_by_destination
-    limit_hz: Callable[[Any], float] = _unlimited
+    override_address: Callable[[Any, str | None, int | None], Any] = override_destination
+    limit_hz: Callable[[Any], float] = _no_limit
 
 
 def _zenoh(section: ZenohSection, instance: str) -> Sink:
@@ -119,8 +118,8 @@ def _zenoh(section: ZenohSection, instance: str) -> Sink:
     return ZenohSink(section, instance)
 
 
-def _zenoh_aimed(section: ZenohSection, host: str | None, port: int | None) -> ZenohSection:
-    """At a host there is a router to join; without one, games come to this machine."""
+def _override_zenoh(section: ZenohSection, host: str | None, port: int | None) -> ZenohSection:
+    """With a host: join its router. Without: listen on this machine."""
     number = section.port if port is None else port
     if host is None:
         return replace(section, port=number, listen=(), connect=())
@@ -147,17 +146,17 @@ def _vmt(section: VmtSection, _instance: str) -> Sink:
 
 OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
     {
-        # Drops what a subscriber does not take. Measured, 3.1 kB frames: median 0.08 ms to one that reads,
-        # 0.05 ms over 10,000 frames to one that is stopped and never does.
+        # Drops frames for a slow subscriber. Measured with frames of 3.1 kB: median 0.08 ms to a subscriber that reads,
+        # 0.05 ms over 10,000 frames to a stopped one.
         "zenoh": OutputEntry(
-            ZenohSection, _zenoh, blocks=False, unsafe=warnings, aimed=_zenoh_aimed
+            ZenohSection, _zenoh, blocks=False, unsafe=warnings, override_address=_override_zenoh
         ),
         # Non-blocking sockets and numeric addresses: a full buffer is an error that is counted. Measured: median
-        # 0.07 ms, also when nobody ever reads.
+        # 0.07 ms, also without a reader.
         "osc": OutputEntry(OscSection, _osc, blocks=False),
         # The same sockets.
         "vmc": OutputEntry(VmcSection, _vmc, blocks=False, limit_hz=_own_rate),
-        # The same, and less of it; what looks for VRChat has a thread of its own.
+        # The same, with fewer bytes; the search for VRChat has a thread of its own.
         "vrchat": OutputEntry(
             VRChatSection,
             _vrchat,
@@ -165,7 +164,7 @@ OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
             unsafe=vrchat_sink.warnings,
             limit_hz=_own_rate,
         ),
-        # The same socket, and one bundle of a constant size.
+        # The same socket, one bundle of a constant size.
         "vmt": OutputEntry(VmtSection, _vmt, blocks=False),
     }
 )
@@ -177,7 +176,7 @@ def output_sections() -> dict[str, Callable[[], OutputSection]]:
 
 
 def default_sections() -> Mapping[str, OutputSection]:
-    """Every output as it is when nothing is configured."""
+    """Every output with its defaults."""
     return {name: entry.section() for name, entry in OUTPUTS.items()}
 
 
@@ -186,8 +185,7 @@ def build_sinks(
     instance: str,
     prediction: PredictionParams = NOT_PREDICTED,
 ) -> tuple[Sink, ...]:
-    """A sink for each output that is enabled; one that is not named is not. Raises ConfigError for a prediction
-    of an output that does not exist."""
+    """A sink for each enabled output in `sections`. Raises ConfigError if `prediction` names an unknown output."""
     unknown = [name for name in prediction.outputs if name not in OUTPUTS]
     if unknown:
         raise ConfigError(
@@ -209,7 +207,7 @@ def build_sinks(
 
 
 def unsafe_outputs(sections: Mapping[str, OutputSection]) -> list[str]:
-    """A line for each setting of an output that is enabled, permitted and yet unsafe."""
+    """One warning for each permitted but unsafe setting of the enabled outputs."""
     return [
         line
         for name, section in sections.items()
@@ -219,7 +217,7 @@ def unsafe_outputs(sections: Mapping[str, OutputSection]) -> list[str]:
 
 
 def zenoh_section(sections: Mapping[str, OutputSection]) -> ZenohSection:
-    """That of Zenoh, for who connects as a client."""
+    """The Zenoh section, for clients."""
     section = sections["zenoh"]
     assert isinstance(section, ZenohSection)
     return section

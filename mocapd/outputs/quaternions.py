@@ -5,7 +5,7 @@ import math
 from mocapd.outputs.wire import Quaternion, Vector
 
 IDENTITY_XYZW: Quaternion = (0.0, 0.0, 0.0, 1.0)
-_STRAIGHT = 1e-9  # a half turn's sine below which a rotation has no axis that could be told
+_STRAIGHT = 1e-9  # sine of half the angle below which the axis is undefined
 
 
 def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
@@ -21,17 +21,17 @@ def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def inverse(q: Quaternion) -> Quaternion:
-    """Back again."""
+    """The inverse rotation."""
     return (-q[0], -q[1], -q[2], q[3])
 
 
 def canonical(q: Quaternion) -> Quaternion:
-    """The same rotation with w >= 0, as it is sent."""
+    """The same rotation with w >= 0, as on the wire."""
     return q if q[3] >= 0.0 else (-q[0], -q[1], -q[2], -q[3])
 
 
 def rotate(q: Quaternion, v: Vector) -> Vector:
-    """The vector turned."""
+    """The rotated vector."""
     x, y, z, w = q
     tx, ty, tz = (
         2.0 * (y * v[2] - z * v[1]),
@@ -46,7 +46,7 @@ def rotate(q: Quaternion, v: Vector) -> Vector:
 
 
 def log(q: Quaternion) -> Vector:
-    """The rotation vector [rad], the shortest way."""
+    """The shortest rotation vector [rad]."""
     x, y, z, w = canonical(q)
     sine = math.sqrt(x * x + y * y + z * z)
     if sine < _STRAIGHT:

@@ -1,4 +1,4 @@
-"""Which process is at a local TCP port: to name who holds one, or who listens to us."""
+"""Names the processes at local TCP ports: the holder of a port, and our clients."""
 
 import os
 
@@ -8,7 +8,7 @@ OF_ANOTHER = "a process of another user"
 
 
 def holder_of(port: int) -> str:
-    """Who listens on a local TCP port: `zenohd (pid 12)`, or OF_ANOTHER; empty when nobody does."""
+    """The process that listens on a local TCP port: `zenohd (pid 12)`, or OF_ANOTHER; empty without listener."""
     for connection in psutil.net_connections("tcp"):
         if connection.status == psutil.CONN_LISTEN and connection.laddr.port == port:
             return describe(connection.pid) or OF_ANOTHER
@@ -16,7 +16,7 @@ def holder_of(port: int) -> str:
 
 
 def listens(pid: int, address: str, port: int) -> bool:
-    """Whether this process lives, is of our user, and itself listens on that local TCP port."""
+    """True if this process lives, belongs to our user, and itself listens on that local TCP port."""
     try:
         process = psutil.Process(pid)
         if process.uids().real != os.getuid():
@@ -30,7 +30,7 @@ def listens(pid: int, address: str, port: int) -> bool:
 
 
 def owners_of(ports: frozenset[int]) -> dict[int, str]:
-    """Who is at each of these local TCP ports (connected, not listening), where visible to us."""
+    """The process connected from each of these local TCP ports, where visible to us."""
     return {
         connection.laddr.port: describe(connection.pid)
         for connection in psutil.net_connections("tcp")
@@ -39,7 +39,7 @@ def owners_of(ports: frozenset[int]) -> dict[int, str]:
 
 
 def describe(pid: int | None) -> str:
-    """`name (pid 12)`; empty for a process that is not visible to us."""
+    """`name (pid 12)`; empty for an invisible process."""
     if pid is None:
         return ""
     try:

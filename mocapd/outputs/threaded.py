@@ -10,11 +10,11 @@ from mocapd.outputs.wire import SkeletonFrame
 
 
 class ThreadedSink:
-    """Wraps any sink: `send` and `tell` return at once. Of the frames that pile up the newest is sent, of the
-    states the newest about each subject, and these first.
+    """Wraps any sink: `send` and `send_state` return at once. The thread sends the newest state of each subject, then
+    the newest frame.
 
-    An error of the inner sink ends its thread, and the next `send` raises, so that the process ends
-    rather than going on without this output.
+    An error of the inner sink ends its thread, and the next `send` raises it, so that the process ends instead of
+    continuing without this output.
     """
 
     def __init__(self, sink: Sink) -> None:
@@ -35,7 +35,7 @@ class ThreadedSink:
         self._thread.start()
 
     def send(self, frame: SkeletonFrame) -> None:
-        """Leave the frame for the thread. Raises what ended it: its named error or RuntimeError."""
+        """Queue the frame for the thread. Raises the error that ended the thread: a MocapdError or RuntimeError."""
         self._thread.check()
         with self._changed:
             if self._closed:
@@ -44,22 +44,22 @@ class ThreadedSink:
             self._frame = frame
             self._changed.notify()
 
-    def tell(self, message: StateMessage) -> None:
-        """Leave it for the thread; before `open`, for the one to come."""
+    def send_state(self, message: StateMessage) -> None:
+        """Queue it for the thread, also before `open`."""
         with self._changed:
             self._states[subject(message)] = message
             self._changed.notify()
 
     def _run(self) -> None:
-        while (waiting := self._taken()) is not None:
+        while (waiting := self._wait_for_work()) is not None:
             states, frame = waiting
             for message in states:
-                self._sink.tell(message)
+                self._sink.send_state(message)
             if frame is not None:
                 self._sink.send(frame)
 
-    def _taken(self) -> tuple[tuple[StateMessage, ...], SkeletonFrame | None] | None:
-        """What waits, as soon as something does; None when it is closed."""
+    def _wait_for_work(self) -> tuple[tuple[StateMessage, ...], SkeletonFrame | None] | None:
+        """The queued states and frame, as soon as there are any; None once closed."""
         with self._changed:
             self._changed.wait_for(lambda: self._closed or self._states or self._frame is not None)
             if self._closed:
@@ -70,7 +70,7 @@ class ThreadedSink:
             return states, frame
 
     def status(self) -> SinkStatus:
-        """The inner sink's; frames displaced in the mailbox count as refused."""
+        """The inner sink's status; frames displaced in the mailbox count as refused."""
         status = self._sink.status()
         with self._changed:
             dropped = self._displaced
@@ -81,7 +81,7 @@ class ThreadedSink:
         )
 
     def close(self) -> None:
-        """Let the thread go, then close the inner sink; may be called twice."""
+        """End the thread, then close the inner sink; may be called twice."""
         with self._changed:
             self._closed, self._frame = True, None
             self._changed.notify()

@@ -21,7 +21,7 @@ JSON = f"{JSON_MIME};{SCHEMA}"
 
 
 class Message(Protocol):
-    """Every message of ours says which it is."""
+    """Any of our messages: it names its schema."""
 
     @property
     def schema(self) -> str: ...
@@ -29,8 +29,8 @@ class Message(Protocol):
 
 M = TypeVar("M", bound=Message)
 
-# What any reader takes, so that no number is infinite or no number in a float32, nor a sum of two times beyond 64 bits.
-# NaN is in no range. Beyond it a whole frame is refused as damaged.
+# Limits for every reader: numbers stay finite in a float32, sums of two times within 64 bits. NaN is in no range.
+# A frame with a number beyond them is refused as damaged.
 Number = Annotated[float, Meta(ge=-1e6, le=1e6)]
 Person = Annotated[int, Meta(ge=0, le=2**31 - 1)]
 Nanoseconds = Annotated[int, Meta(ge=-(2**62), le=2**62)]
@@ -120,9 +120,9 @@ def encode_json(frame: SkeletonFrame) -> bytes:
 
 
 def decode(payload: bytes, encoding: str = MSGPACK) -> SkeletonFrame:
-    """A payload back to a frame; fields of later additions to v1 are skipped.
+    """Decode a frame; unknown fields (later additions to v1) are skipped.
 
-    `encoding` is what came with it, `<mime>;<schema>`. Raises InputError for a damaged payload, an
+    `encoding`: the sender's `<mime>;<schema>`. Raises InputError for a damaged payload, an
     encoding that is neither msgpack nor JSON, or another schema version.
     """
     return decode_message(payload, encoding, SkeletonFrame, SCHEMA)

@@ -1,9 +1,8 @@
-"""Trackers as VR programs know them, strapped to a body: the number of each, and of which bones its place and rotation are.
+"""Virtual trackers on a body, as for VR programs: the number, position joint and rotation bone of each.
 
-The numbers are SlimeVR's ("don't change, as third party applications may rely on this", its VRCOSCHandler);
-VRChat itself finds out at calibration what each tracker is on, SteamVR is told by the user. As SlimeVR's, a
-tracker is at the end of the bone whose rotation it has: the knee's turns with the thigh, the elbow's with the upper
-arm (its HumanSkeleton).
+The numbers are SlimeVR's ("don't change, as third party applications may rely on this", its VRCOSCHandler).
+VRChat assigns trackers to body parts at calibration; in SteamVR the user does. As in SlimeVR (its HumanSkeleton), a
+tracker is at the end of its rotation bone: the knee's rotates with the thigh, the elbow's with the upper arm.
 """
 
 from dataclasses import dataclass
@@ -15,8 +14,8 @@ BodyPart = Literal["hip", "feet", "chest", "knees", "elbows"]
 
 @dataclass(frozen=True, slots=True)
 class WornTracker:
-    """number: in VRChat's addresses; label: for people; place, turn: VRM names of the joint where it is, and of the
-    bone whose rotation it has. It is as well known as the less known of the two."""
+    """number: in VRChat's addresses; label: for display; place, turn: VRM names of its position joint and of its
+    rotation bone. Its confidence is the lower of the two."""
 
     number: int
     label: str
@@ -46,5 +45,5 @@ TRACKERS_OF: MappingProxyType[BodyPart, tuple[WornTracker, ...]] = MappingProxyT
 
 def trackers_of(parts: tuple[BodyPart, ...]) -> tuple[WornTracker, ...]:
     """The trackers of these parts of the body, each once, by number."""
-    found = {one.number: one for part in parts for one in TRACKERS_OF[part]}
-    return tuple(found[number] for number in sorted(found))
+    trackers = {tracker.number: tracker for part in parts for tracker in TRACKERS_OF[part]}
+    return tuple(trackers[number] for number in sorted(trackers))

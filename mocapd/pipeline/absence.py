@@ -1,4 +1,4 @@
-"""What is told while no camera delivers at all: the pose fades for a moment, then nobody is known. Pure."""
+"""Bodies to publish while no camera delivers: the last pose coasts with falling confidence, then `lost`. Pure."""
 
 from collections import deque
 from dataclasses import replace
@@ -11,39 +11,38 @@ from mocapd.types import BodyState, Tracking
 
 COASTING_EVERY_NS = NS_PER_S // 10
 LOST_EVERY_NS = NS_PER_S
-FIRST_NS = 3 * NS_PER_S  # the cameras may take this long to open before anything is told
+FIRST_NS = 3 * NS_PER_S  # grace time for opening the cameras
 
-_PERIODS = 4  # of the cameras without a frame: then none is on its way
-_SOONEST_NS = 150_000_000
-_LATEST_NS = NS_PER_S  # also assumed until two bodies told how often they come
-_REMEMBERED = 8  # intervals; the longest counts, so that a rate that falls is no absence
+_PERIODS = 4  # frame intervals until the timeout
+_SOONEST_NS = 150_000_000  # limits of the timeout
+_LATEST_NS = NS_PER_S  # also the timeout before the first interval
+_REMEMBERED = 8  # intervals; the longest counts, so that a falling rate causes no timeout
 
 
 class Absence:
-    """Decides by time alone. Trackers see frames only, so without any their own coasting stands still.
+    """A timeout on frames. A tracker steps on frames only, so without frames its own coasting stands still.
 
-    `begin` once, `came` with every body of frames; whenever `due_ns` has passed, `tell` gives the body
-    to be sent instead. It is never timed before what was told already.
+    Call `begin` once, `came` with every body of frames, and `next_body` when `due_ns` has passed: it gives the body to
+    publish. Published times strictly rise.
     """
 
     def __init__(self, tracker: str, n_joints: int, coast_s: float) -> None:
-        """coast_s: how long after the last evidence a pose is still told [s]."""
+        """coast_s: how long after the last evidence a pose is still published [s]."""
         self.due_ns: int | None = None  # by the clock; None before `begin`
-        self._nobody = BodyState(0, Tracking.LOST, tracker, None, None, np.zeros(n_joints))
+        self._no_person = BodyState(0, Tracking.LOST, tracker, None, None, np.zeros(n_joints))
         self._coast_ns = nanoseconds(coast_s)
         self._last: BodyState | None = None  # of frames
         self._came_ns = 0  # by the clock
         self._evidence_ns = 0  # the time of the last body with evidence
-        self._told_ns = 0  # the time of the last body, of frames or not
+        self._sent_ns = 0  # the time of the last body, of frames or not
         self._intervals_ns: deque[int] = deque(maxlen=_REMEMBERED)
 
     def begin(self, now_ns: int) -> None:
-        """From now on frames are expected."""
+        """Start to expect frames."""
         self.due_ns = now_ns + FIRST_NS
 
     def came(self, body: BodyState, now_ns: int) -> BodyState:
-        """A body of frames is about to be sent: here it is, timed just after what was told before it
-        where its frames are older than that."""
+        """The body of frames to publish; its time is raised where it is not after the last published one."""
         if self._last is not None:
             interval_ns = now_ns - self._came_ns
             if interval_ns <= _LATEST_NS:  # a longer one is an outage, not a rate
@@ -51,30 +50,30 @@ class Absence:
         self._last, self._came_ns = body, now_ns
         if body.tracking is Tracking.LIVE:
             self._evidence_ns = body.t_ns
-        self.due_ns = now_ns + self._patience_ns()
-        if body.t_ns <= self._told_ns:
-            body = replace(body, t_ns=self._told_ns + 1)
-        self._told_ns = body.t_ns
+        self.due_ns = now_ns + self._timeout_ns()
+        if body.t_ns <= self._sent_ns:
+            body = replace(body, t_ns=self._sent_ns + 1)
+        self._sent_ns = body.t_ns
         return body
 
-    def tell(self, now_ns: int) -> BodyState | None:
-        """What to send at `now_ns`, when something is due; None when not."""
+    def next_body(self, now_ns: int) -> BodyState | None:
+        """The body to publish at `now_ns`; None before `due_ns`."""
         if self.due_ns is None or now_ns < self.due_ns:
             return None
         last = self._last
         if last is None:
-            body = replace(self._nobody, t_ns=now_ns)
+            body = replace(self._no_person, t_ns=now_ns)
         else:
-            # the cameras' delay is left as it was
-            t_ns = max(last.t_ns + now_ns - self._came_ns, self._told_ns + 1)
-            body = self._coasting(last, t_ns) or replace(self._nobody, t_ns=t_ns)
+            # with the cameras' last delay
+            t_ns = max(last.t_ns + now_ns - self._came_ns, self._sent_ns + 1)
+            body = self._coasting(last, t_ns) or replace(self._no_person, t_ns=t_ns)
         lost = body.tracking is Tracking.LOST
         self.due_ns = now_ns + (LOST_EVERY_NS if lost else COASTING_EVERY_NS)
-        self._told_ns = body.t_ns
+        self._sent_ns = body.t_ns
         return body
 
     def _coasting(self, last: BodyState, t_ns: int) -> BodyState | None:
-        """The last pose, believed less and less; None when it is too old, or there was none."""
+        """The last pose with its confidence faded; None when it is too old, or there was none."""
         if last.tracking is Tracking.LOST or t_ns - self._evidence_ns > self._coast_ns:
             return None
         away_s = seconds(t_ns - last.t_ns)
@@ -87,6 +86,6 @@ class Absence:
             uncertainty_m=grown(last.uncertainty_m, away_s),
         )
 
-    def _patience_ns(self) -> int:
+    def _timeout_ns(self) -> int:
         longest_ns = max(self._intervals_ns, default=_LATEST_NS)
         return min(max(_PERIODS * longest_ns, _SOONEST_NS), _LATEST_NS)

@@ -1,4 +1,4 @@
-"""The newest body, for whoever looks; bodies go on to who works with them. Twin of `frame_hub`."""
+"""Holds the newest body for readers and passes every body to subscribers. Counterpart of `frame_hub`."""
 
 import threading
 from dataclasses import dataclass
@@ -10,10 +10,10 @@ from mocapd.types import BodyState, FrameSet, Skeleton
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BodySample:
-    """A person at one instant as a pipeline leaves it.
+    """The pipeline's result at one instant.
 
-    track: of the tracker, its body smoothed and, without frames, faded; skeleton: what that pose is of;
-    frames: what it was seen in, none of them where it is told by the clock alone.
+    track: of the tracker, its body smoothed and, without frames, faded; skeleton: of its pose; frames: its frame set,
+    empty while no camera delivers.
     """
 
     track: Track
@@ -27,15 +27,15 @@ class BodySample:
 
 
 class TakesBodies(Protocol):
-    """Where bodies go on to; `put` never blocks."""
+    """A subscriber; `put` never blocks."""
 
     def put(self, sample: BodySample, /) -> None: ...
 
 
 class BodyHub:
-    """What pipelines put bodies in, one pipeline after another. Keeps a reference to the newest, no copy.
+    """Receives the bodies of successive pipelines. Holds a reference to the newest, no copy.
 
-    Safe from any threads. Whoever joins gets every body from then on, in the pipeline's thread.
+    Safe from any threads. A subscriber gets every body from `join` on, in the pipeline's thread.
     """
 
     def __init__(self, *onwards: TakesBodies) -> None:
@@ -44,29 +44,29 @@ class BodyHub:
         self._onwards: tuple[TakesBodies, ...] = onwards
 
     def put(self, sample: BodySample) -> None:
-        """Hand in a body."""
+        """Add a body."""
         with self._lock:
             self._newest = sample
             onwards = self._onwards
-        for one in onwards:
-            one.put(sample)
+        for taker in onwards:
+            taker.put(sample)
 
     def newest(self) -> BodySample | None:
-        """The newest body; None before the first, and after `forget` until another comes."""
+        """The newest body; None before the first, and after `forget` until the next."""
         with self._lock:
             return self._newest
 
     def forget(self) -> None:
-        """What put bodies in has ended, and the newest no longer holds."""
+        """Drop the newest body, because its pipeline has ended."""
         with self._lock:
             self._newest = None
 
     def join(self, taker: TakesBodies) -> None:
-        """From now on this one gets every body too."""
+        """Add a subscriber."""
         with self._lock:
             self._onwards = (*self._onwards, taker)
 
     def leave(self, taker: TakesBodies) -> None:
-        """No more bodies for this one; nothing happens when it never joined."""
+        """Remove a subscriber, if it is one."""
         with self._lock:
-            self._onwards = tuple(one for one in self._onwards if one is not taker)
+            self._onwards = tuple(other for other in self._onwards if other is not taker)

@@ -1,23 +1,22 @@
 """Pairs the frames of free-running cameras by their time of capture. Pure: no thread, no clock.
 
-The rule. A set is built around one frame, the anchor: that of the rig's first camera that takes
-part. Another camera's frame belongs to it when the two are at most half a period apart. With equal
-rates exactly one frame of each camera does, so nothing waits longer than that frame needs, and the
-spread stays within half a period. Two cameras half a period apart would change partners with every
-jitter; so an established pairing is kept until it exceeds half a period by `hysteresis_periods`.
+Pairing. A set is built around an anchor: the frame of the first participating camera of the rig.
+Another camera's frame belongs to the set if it is at most half a period from the anchor. With equal
+rates this holds for exactly one frame of each camera, so the spread stays within half a period. Two
+cameras half a period apart would change partners with every jitter; so a pairing has hysteresis: it
+lasts until it exceeds half a period by `hysteresis_periods`.
 
-The wait. Each camera's period and delay (arrival minus capture) are learned, so the bundler knows
-when the next frame of each should arrive. A set goes out the moment its last expected frame
-arrives, or without the missing one at that frame's expected arrival plus `slack_periods`; a camera
-with a wait of its own is waited for so long. One that failed `patience` sets in a row is not waited
-for until it returns.
+Timeout. The bundler estimates each camera's period and delay (arrival minus capture), and so the
+arrival of its next frame. A set is complete when its last expected frame arrives. Without that frame
+it goes out at the expected arrival plus `slack_periods`, or after the camera's own wait. A camera that
+missed `patience` sets in a row causes no wait until it returns.
 
-The time. A set's time is that of its newest frame: the pose is asked for at the freshest instant, and
-each frame carries its own. Sets follow each other by their anchors. Among cameras of different rates
-the newest frame of a set may be older than that of the set before; such a set is timed just after it.
+Time. A set's time is that of its newest frame, for which the pose is estimated; each frame has its
+own. Sets are ordered by their anchors. With different camera rates the newest frame of a set may be
+older than the previous set's; such a set is timed just after the previous one.
 
-Two clocks. Frames carry capture times; waiting happens on arrival times, `now_ns`. Live callers
-give both; for recordings fed in order of capture `now_ns` is left out and is the newest capture.
+Clocks. Frames have capture times; timeouts use arrival times, `now_ns`. Live callers give both; for
+recordings in order of capture `now_ns` is omitted and defaults to the newest capture time.
 """
 
 import heapq
@@ -32,14 +31,14 @@ from mocapd.types import Frame, FrameSet
 
 @dataclass(frozen=True, slots=True)
 class BundlerParams:
-    """How long the frames of one moment wait for each other; periods are learned from the cameras.
+    """Timeouts of a frame set; periods are estimated from the frames.
 
-    period_s: assumed of a camera until two of its frames were seen [s]
+    period_s: assumed of a camera before its second frame [s]
     slack_periods: how late a frame may be before its set goes without it [periods]
     longest_wait_periods: no set waits longer than this after its first frame arrived [periods]; a camera
-      whose delay exceeds the others' by more is never paired
+      with a delay beyond the others' by more is never paired
     hysteresis_periods: by how much an established pairing may exceed half a period [periods]
-    patience: sets in a row a camera may miss before nobody waits for it any more
+    patience: sets in a row that a camera may miss before sets stop waiting for it
     camera_waits_s: by camera, how long a set waits for it after its first frame arrived [s], in place of
       the slack and the longest wait
     """
@@ -54,7 +53,7 @@ class BundlerParams:
 
 @dataclass(frozen=True, slots=True)
 class CameraCounts:
-    """One camera's frames. received = used + late + waiting in the bundler, always.
+    """One camera's frames. Always received = used + late + those queued in the bundler.
 
     late: discarded, because their set had gone or the time ran backwards within the camera;
     lost: never delivered (gaps in `seq`), not part of received.
@@ -85,10 +84,10 @@ class Bundler:
         self._last_anchor: CameraQueue | None = None
 
     def add(self, frame: Frame, now_ns: int | None = None) -> tuple[FrameSet, ...]:
-        """Take a frame; the sets that are complete by it, oldest first: most often none or one.
+        """Add a frame; returns the sets that it completes, oldest first, mostly none or one.
 
-        `now_ns`: its arrival on any steady clock; leave out (always) for recordings. Raises
-        KeyError for a camera that was not named.
+        `now_ns`: its arrival on any monotonic clock; omit it for recordings. Raises KeyError for an
+        unknown camera.
         """
         camera = self._cameras[frame.camera]
         now_ns = self._advance(frame.t_ns if now_ns is None else now_ns)
@@ -96,11 +95,11 @@ class Bundler:
         return self._drain(now_ns)
 
     def flush(self, now_ns: int) -> tuple[FrameSet, ...]:
-        """The sets whose waiting time is over at `now_ns`, oldest first."""
+        """The sets whose timeout has passed at `now_ns`, oldest first."""
         return self._drain(self._advance(now_ns))
 
     def finish(self) -> tuple[FrameSet, ...]:
-        """The sets still waiting, oldest first: nothing more will come."""
+        """The sets still queued at the end of all streams, oldest first."""
         return self._drain(None)
 
     @property
@@ -109,14 +108,14 @@ class Bundler:
         return self._deadline_ns
 
     def counts(self) -> dict[str, CameraCounts]:
-        """What became of each camera's frames so far."""
+        """Each camera's frame counts so far."""
         return {
             name: CameraCounts(camera.received, camera.used, camera.late, camera.lost)
             for name, camera in self._cameras.items()
         }
 
     def delays_ns(self) -> dict[str, int]:
-        """Each camera's usual time from capture to arrival [ns]; 0 before its first frame."""
+        """Each camera's median time from capture to arrival [ns]; 0 before its first frame."""
         return {name: camera.delay_ns for name, camera in self._cameras.items()}
 
     def _advance(self, now_ns: int) -> int:
@@ -130,10 +129,10 @@ class Bundler:
         return tuple(sets)
 
     def _next_members(self, now_ns: int | None) -> list[CameraQueue]:
-        """The cameras, anchor first, whose oldest frames form the next set; none while it waits.
+        """The cameras of the next set, anchor first, each with its oldest frame; none while it waits.
 
-        It is the set of the oldest frame at hand. In rig order each camera's frame, at hand or
-        awaited, claims the free ones within its reach, until the oldest is claimed.
+        It is the set of the oldest queued frame. In rig order each camera's frame, queued or
+        expected, claims the free ones within its reach, until the oldest is claimed.
         """
         self._deadline_ns = None
         self._discard_late()
@@ -183,7 +182,7 @@ class Bundler:
         slack_ns = round(self._params.slack_periods * oldest.period_ns)
         longest_ns = round(self._params.longest_wait_periods * oldest.period_ns)
         until_ns = oldest.head_arrival_ns + (longest_ns if own_ns is None else own_ns)
-        if camera.seen and own_ns is None:
+        if camera.has_received and own_ns is None:
             until_ns = min(until_ns, expected_ns + camera.delay_ns + slack_ns)
         return until_ns if now_ns < until_ns else None
 
@@ -198,7 +197,7 @@ class Bundler:
         return abs(offset_ns) <= reach_periods * min(anchor.period_ns, other.period_ns)
 
     def _discard_late(self) -> None:
-        """Drop the frames whose set has gone out already."""
+        """Drop the frames of sets that have gone out already."""
         anchor, last_ns = self._last_anchor, self._last_ns
         if anchor is None:
             return

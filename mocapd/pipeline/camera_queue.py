@@ -1,17 +1,17 @@
-"""One camera's frames at hand, and what its past says of when the next one comes."""
+"""One camera's queued frames, and the prediction of its next frame's time."""
 
 from collections import deque
 
 from mocapd.clock import NS_PER_S
 from mocapd.types import Frame
 
-_REMEMBERED = 8  # intervals and delays; the median of so many forgives three outliers
+_REMEMBERED = 8  # intervals and delays; their median tolerates three outliers
 _LONGEST_PERIOD_NS = NS_PER_S  # a longer interval is an outage, not a rate
-_SHORTEST_PERIOD_NS = NS_PER_S // 1000  # a shorter one is a number that the source made up
+_SHORTEST_PERIOD_NS = NS_PER_S // 1000  # a shorter one is an error of the source
 
 
 class CameraQueue:
-    """Frames in order of capture, the learned period and delay [ns], and the counts."""
+    """Frames in order of capture, the estimated period and delay [ns], and the counts."""
 
     def __init__(self, name: str, period_ns: int) -> None:
         self.name = name
@@ -26,22 +26,22 @@ class CameraQueue:
         self._delays: deque[int] = deque(maxlen=_REMEMBERED)
 
     @property
-    def seen(self) -> bool:
-        """Whether any frame came yet, so that something is learned."""
+    def has_received(self) -> bool:
+        """True after the first frame: period and delay are measured."""
         return self._newest is not None
 
     @property
     def head_ns(self) -> int:
-        """Capture time of the oldest frame at hand."""
+        """Capture time of the oldest queued frame."""
         return self.frames[0][0].t_ns
 
     @property
     def head_arrival_ns(self) -> int:
-        """When the oldest frame at hand arrived."""
+        """Arrival time of the oldest queued frame."""
         return self.frames[0][1]
 
     def accept(self, frame: Frame, arrival_ns: int) -> None:
-        """Queue a frame and learn from it. One not newer than its predecessor counts as late."""
+        """Queue a frame and update the estimates. A frame that is not newer than its predecessor counts as late."""
         self.received += 1
         self.missed = 0
         if self._newest is not None:
@@ -56,10 +56,10 @@ class CameraQueue:
         self.frames.append((frame, arrival_ns))
 
     def _learn(self, steps: int, interval_ns: int) -> None:
-        """Period and lost frames from two successive frames: the difference of their `seq`, and their distance in time.
+        """Period and lost frames from the difference of two successive frames in `seq` and in time.
 
-        `seq` is what a camera node says. So a gap counts as no more frames than fit into the time: what is lost is
-        bounded by how long the camera runs. `seq` starts again when a camera is reopened: then the gap is unknown.
+        `seq` may come from an untrusted camera node, so a gap counts at most the frames that fit into the time. `seq`
+        restarts when a camera is reopened: then the gap is unknown.
         """
         period_ns = interval_ns // max(1, steps)
         if _SHORTEST_PERIOD_NS <= period_ns <= _LONGEST_PERIOD_NS:
@@ -81,7 +81,7 @@ class CameraQueue:
     def expected_ns(self, near_ns: int) -> int:
         """The capture time, nearest to `near_ns`, of a frame still to come."""
         if self._newest is None:
-            return near_ns  # nothing known: it may come any moment
+            return near_ns  # before the first frame: it may come at any time
         newest_ns = self._newest[1]
         steps = round((near_ns - newest_ns) / self.period_ns)
         return newest_ns + max(1, steps) * self.period_ns

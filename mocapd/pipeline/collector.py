@@ -1,4 +1,4 @@
-"""Between the capture threads and the pipeline's thread: bundles on arrival, keeps the newest set."""
+"""Between the capture threads and the pipeline's thread: bundles frames on arrival, stores the newest set."""
 
 import threading
 from collections.abc import Callable, Iterable
@@ -14,8 +14,8 @@ from mocapd.types import Frame, FrameSet
 class CollectorCounts:
     """`sets`: frame sets made; `dropped`: those displaced by a newer one before they were fetched.
 
-    Per camera: what became of its frames, frames arriving per second [Hz], and the median of
-    arrival minus capture [ms].
+    Per camera: frame counts, frames arriving per second [Hz], and the median of arrival minus
+    capture [ms].
     """
 
     sets: int
@@ -28,9 +28,9 @@ class CollectorCounts:
 class FrameCollector:
     """The mailbox of a whole rig: any thread puts frames, one thread takes frame sets.
 
-    Frames are bundled in the thread that puts them (some forty microseconds), so pairing goes on
-    while the pipeline computes, and what it finds afterwards is the newest set that is whole.
-    Dropping single frames instead would break the pairs.
+    Frames are bundled in the thread that puts them (some forty microseconds), so pairing continues
+    while the pipeline computes, and the pipeline then gets the newest complete set. Dropping single
+    frames instead would break the pairs.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class FrameCollector:
         self._closed = False
 
     def put(self, frame: Frame) -> None:
-        """Hand in a frame; never blocks. Raises KeyError for a camera that was not named."""
+        """Add a frame; never blocks. Raises KeyError for an unknown camera."""
         with self._changed:
             if self._closed:
                 return
@@ -77,19 +77,19 @@ class FrameCollector:
 
     @property
     def sets(self) -> int:
-        """How many frame sets were made so far."""
+        """Number of frame sets made so far."""
         with self._changed:
             return self._sets
 
     @property
     def idle(self) -> bool:
-        """Whether nothing is ready to be fetched just now."""
+        """True if no frame set is ready."""
         with self._changed:
             return self._ready is None
 
     @property
     def closed(self) -> bool:
-        """Whether `close` was called."""
+        """True after `close`."""
         with self._changed:
             return self._closed
 
@@ -101,7 +101,7 @@ class FrameCollector:
             self._changed.notify_all()
 
     def counts(self) -> CollectorCounts:
-        """What became of the sets and of each camera's frames so far."""
+        """Counts of the sets and of each camera's frames so far."""
         with self._changed:
             now_ns = self._clock()
             return CollectorCounts(

@@ -1,7 +1,7 @@
-"""How much work the tracker does: less where frame sets come faster than they are tracked, more where there is room again.
+"""Controls the tracker's effort by its load: less when frame sets come faster than they are tracked, more when idle.
 
-Quality falls quickly and comes back slowly: frame sets that are skipped are lost, and a machine that is too slow for more
-work stays so. An attempt at more that failed is not repeated soon.
+It lowers the effort quickly, because skipped frame sets are lost. It raises the effort slowly, and after a failed
+attempt with exponential backoff, because a slow machine mostly stays slow.
 """
 
 import math
@@ -16,13 +16,13 @@ _LONGEST_PERIOD_S = 0.5  # a longer time between frame sets is a pause, not a ra
 
 @dataclass(frozen=True, slots=True)
 class EffortControlParams:
-    """When the effort changes. Load is the time that a frame set takes, as a share of the time between two.
+    """Thresholds of the control. Load: the time that a frame set takes, relative to the interval of frame sets.
 
-    late_load: above it the machine is late, or where more than `skipping` of the frame sets are followed by one that was
-    skipped, at skip_load or more (below it something else is at fault); for fall_s, and less is done.
-    room_load: below it there is room for more work, which is tried after rise_s; more work that is late within fails_s
-    has failed: it is tried again after retry_s, twice that after the next failure, most_retry_s at most.
-    smooth_s, skips_s: over which load and skipped sets are averaged; hiccup: most load that one frame set counts with.
+    late_load: above it the machine is late; it is also late if more than `skipping` of the frame sets are followed by a
+    skipped one at skip_load or more (below, the cause is elsewhere). After fall_s of that the effort falls.
+    room_load: below it the effort rises after rise_s. A rise that makes the machine late within fails_s has failed: the
+    next attempt is after retry_s, doubled at each failure up to most_retry_s.
+    smooth_s, skips_s: averaging times of load and skips; hiccup: largest load counted for one frame set.
     """
 
     late_load: float = 0.92
@@ -40,29 +40,29 @@ class EffortControlParams:
 
 
 class EffortControl:
-    """Hears of every frame set that was tracked; its times are the caller's, so that it needs no clock."""
+    """Gets every tracked frame set, with times from the caller: it needs no clock."""
 
     def __init__(self, params: EffortControlParams | None = None) -> None:
         self._params = p = params if params is not None else EffortControlParams()
         self.effort = Effort.FULL
         self._period_s: float | None = None
         self._last: tuple[int, int] | None = None  # the last set's capture time [ns], and number
-        self._wait_s = p.rise_s  # how long there must be room before more is tried
+        self._wait_s = p.rise_s  # time below room_load before a rise
         self._rose_ns: int | None = (
-            None  # when more was tried, until that has proved right or failed
+            None  # time of the last rise, until it has proved right or failed
         )
-        self._begin_anew()
+        self._restart()
 
-    def _begin_anew(self) -> None:
-        """Nothing is known of the load at the present effort."""
+    def _restart(self) -> None:
+        """Reset the load estimate after a change of effort."""
         p = self._params
         self._load, self._skips = 0.5 * (p.room_load + p.late_load), 0.0
         self._late_since_ns: int | None = None
         self._room_since_ns: int | None = None
 
-    def tracked(self, t_ns: int, number: int, busy_ns: int, now_ns: int) -> Effort:
-        """The effort for the next frame set, after one that was taken at t_ns, was the number-th that was made, and took
-        busy_ns until now_ns."""
+    def update(self, t_ns: int, number: int, busy_ns: int, now_ns: int) -> Effort:
+        """The effort for the next frame set. t_ns, number: capture time and number of the last one; busy_ns: its tracking
+        time, which ended at now_ns."""
         last, self._last = self._last, (t_ns, number)
         if last is None or number <= last[1]:
             return self.effort
@@ -104,16 +104,16 @@ class EffortControl:
 
     def _change(self, effort: Effort) -> None:
         self.effort = effort
-        self._begin_anew()
+        self._restart()
 
 
 def _since(before_ns: int | None, holds: bool, now_ns: int) -> int | None:
-    """Since when something has held without a break; None while it does not."""
+    """Start of the time that a condition has held without a break; None while it does not hold."""
     if not holds:
         return None
     return now_ns if before_ns is None else before_ns
 
 
 def _lasted_s(since_ns: int | None, now_ns: int) -> float:
-    """How long it has held [s]; 0 where it does not."""
+    """Time that a condition has held [s]; 0 while it does not hold."""
     return 0.0 if since_ns is None else seconds(now_ns - since_ns)

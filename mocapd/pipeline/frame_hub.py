@@ -1,4 +1,4 @@
-"""The newest picture of every camera, for whoever looks; frames go on to who works with them."""
+"""Holds the newest frame of every camera for readers and passes every frame to subscribers."""
 
 import threading
 from collections.abc import Iterable
@@ -9,16 +9,16 @@ from mocapd.types import Frame
 
 
 class TakesFrames(Protocol):
-    """Where frames go on to; `put` never blocks."""
+    """A subscriber; `put` never blocks."""
 
     def put(self, frame: Frame, /) -> None: ...
 
 
 class FrameHub:
-    """The mailbox of capture threads. Keeps a reference to each camera's newest frame, no copy.
+    """The mailbox of capture threads. Holds a reference to each camera's newest frame, no copy.
 
-    Safe from any threads. Whoever joins gets every frame from then on, in the capture threads; `bundler`:
-    how whoever makes frame sets of them is to wait for these cameras.
+    Safe from any threads. A subscriber gets every frame from `join` on, in the capture threads; `bundler`:
+    the bundler's timeouts for these cameras.
     """
 
     def __init__(
@@ -31,7 +31,7 @@ class FrameHub:
         self._onwards: tuple[TakesFrames, ...] = onwards
 
     def put(self, frame: Frame) -> None:
-        """Hand in a frame."""
+        """Add a frame."""
         with self._lock:
             self._newest[frame.camera] = frame
             onwards = self._onwards
@@ -44,11 +44,11 @@ class FrameHub:
             return self._newest.get(camera)
 
     def join(self, taker: TakesFrames) -> None:
-        """From now on this one gets every frame too."""
+        """Add a subscriber."""
         with self._lock:
             self._onwards = (*self._onwards, taker)
 
     def leave(self, taker: TakesFrames) -> None:
-        """No more frames for this one; nothing happens when it never joined."""
+        """Remove a subscriber, if it is one."""
         with self._lock:
             self._onwards = tuple(one for one in self._onwards if one is not taker)

@@ -1,4 +1,4 @@
-"""Keeps Python's cyclic garbage collector out of the frames' way."""
+"""Runs Python's cyclic garbage collector between frames only."""
 
 import gc
 import threading
@@ -10,12 +10,12 @@ ALL_EVERY_NS = 30 * NS_PER_S
 
 
 class IdleCollection:
-    """Within it, garbage is collected only when `idle` is called.
+    """Within this context, garbage is collected only by `idle`.
 
-    A full collection walks every container object; with numba, zenoh and matplotlib loaded that is
-    120,000 of them and 90 ms (measured), in the midst of whatever frame triggers it. So those alive
-    on entry are frozen (never walked again) and what is made later, which is little, is collected
-    between frames. It is the process's own setting: of several, the last to leave puts it back.
+    A full collection walks every container object; with numba, zenoh and matplotlib loaded these are
+    120,000, and it takes 90 ms (measured) in the frame that triggers it. So the objects alive on entry
+    are frozen (never walked again), and the few later ones are collected between frames. The setting
+    is the process's: of several contexts, the last to exit restores it.
     """
 
     _lock = threading.Lock()
@@ -41,7 +41,7 @@ class IdleCollection:
                 gc.unfreeze()
 
     def idle(self, now_ns: int) -> None:
-        """Nothing is waiting: collect what is due, young objects each second, all twice a minute."""
+        """Called while no frame waits: collects young objects each second, all twice a minute."""
         if self._young_ns is None or self._all_ns is None:
             self._young_ns = self._all_ns = now_ns
         if now_ns - self._all_ns >= ALL_EVERY_NS:

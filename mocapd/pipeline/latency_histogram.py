@@ -1,4 +1,4 @@
-"""Latencies counted by size since the start: what percentiles of the last ten seconds do not tell."""
+"""Histogram of all latencies since the start, which percentiles of the last ten seconds do not show."""
 
 from bisect import bisect_left
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ BOUNDS_MS = (5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 75.0, 100.0, 150.0, 
 
 @dataclass(frozen=True, slots=True)
 class LatencyCounts:
-    """counts: of latencies up to each of BOUNDS_MS and above the one before, the last of those beyond all."""
+    """counts: of latencies in each bin, from the previous bound (exclusive) to each of BOUNDS_MS; the last bin is open."""
 
     counts: tuple[int, ...] = (0,) * (len(BOUNDS_MS) + 1)
     sum_ms: float = 0.0
@@ -26,7 +26,7 @@ class LatencyHistogram:
         self._sum_ms = 0.0
 
     def add(self, latency_ms: float) -> None:
-        """One frame's."""
+        """Count one frame's latency."""
         self._counts[bisect_left(BOUNDS_MS, latency_ms)] += 1
         self._sum_ms += latency_ms
 

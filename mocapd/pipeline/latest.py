@@ -1,4 +1,4 @@
-"""A mailbox of depth one between two threads: the newest item wins, what it displaces is counted."""
+"""A mailbox of depth one between two threads: the newest item wins, displaced items are counted."""
 
 import threading
 from typing import Generic, TypeVar
@@ -9,8 +9,7 @@ T = TypeVar("T")
 class Latest(Generic[T]):
     """Hands over the newest item. `put` never blocks; `get` waits; safe from any threads.
 
-    After `close`, waiters wake, `get` returns None at once and `put` discards (uncounted: nobody
-    is left to miss it).
+    After `close`, waiters wake, `get` returns None at once and `put` discards without counting.
     """
 
     def __init__(self) -> None:
@@ -20,7 +19,7 @@ class Latest(Generic[T]):
         self._closed = False
 
     def put(self, item: T) -> None:
-        """Leave an item, displacing one that nobody fetched."""
+        """Leave an item, displacing an unread one."""
         with self._changed:
             if self._closed:
                 return
@@ -45,12 +44,12 @@ class Latest(Generic[T]):
 
     @property
     def dropped(self) -> int:
-        """How many items were displaced before anybody fetched them."""
+        """Number of items displaced unread."""
         with self._changed:
             return self._dropped
 
     @property
     def closed(self) -> bool:
-        """Whether `close` was called: tells the None of an end from the None of a timeout."""
+        """True after `close`: distinguishes the None of an end from that of a timeout."""
         with self._changed:
             return self._closed

@@ -1,4 +1,4 @@
-"""The pipeline's thread: newest frame set -> tracker -> smoother -> bodies; without frames, word of that."""
+"""The pipeline's thread: newest frame set -> tracker -> smoother -> bodies; without frames, bodies of `absence`."""
 
 import threading
 from collections.abc import Callable
@@ -21,18 +21,17 @@ from mocapd.types import FrameSet
 
 OnDeath = Callable[[BaseException], None]
 
-LOOK_UP_S = 0.5  # without frames, how often the thread looks whether it should stop [s]
+LOOK_UP_S = 0.5  # interval of checks for `stop` without frames [s]
 
 
 class PipelineLoop:
-    """Runs one tracker on whatever the collector holds, until stopped, and owns the wearer's shape. A tracker that can leave
-    out work does so where it is too slow for its frame sets.
+    """Runs one tracker on the collector's newest frame sets until stopped, and owns the wearer's shape. It lowers the
+    effort of a tracker that is too slow for its frame sets, if the tracker supports it.
 
-    `bodies` gets each body in the pipeline's thread, also while `lost`, and must not block; with an
-    empty frame set what `absence` tells while no frames come, which it says when given. `off_m`: by how much the cameras'
-    views contradict each other for good, asked at each frame set.
-    `on_death` is called in that thread with whatever ends it unexpectedly, which is then
-    raised again; being stopped is no death.
+    `bodies` gets each body in the pipeline's thread, also while `lost`, and must not block; without frames it gets the
+    bodies of `absence`, if given, with an empty frame set. `off_m`: the persistent disagreement of the cameras' views,
+    called at each frame set. `on_death` is called in that thread with an unexpected exception, which is then raised
+    again; not at `stop`.
     """
 
     def __init__(
@@ -48,14 +47,14 @@ class PipelineLoop:
     ) -> None:
         self._collector = collector
         self._tracker = tracker
-        self._shape = shape  # the wearer's: outlives what one tracker knows
+        self._shape = shape  # the wearer's: outlives the tracker's state
         self._skeleton = skeleton_of(shape)
         self._smoother = smoother
         self._bodies = bodies
         self._on_death = on_death
         self._absence, self._off_m = absence, off_m
         self._stopping = threading.Event()
-        self._began_ns: int | None = None  # the step that runs
+        self._began_ns: int | None = None  # start of the current step
         self._recorder = MetricsRecorder()
         self._effort = EffortControl()
         self._slowness, self._others = SlownessWatch(), OtherPrograms()
@@ -63,11 +62,11 @@ class PipelineLoop:
         self._thread = threading.Thread(target=self._run, name="pipeline", daemon=True)
 
     def start(self) -> None:
-        """Begin; returns at once. Warm the tracker's kernels before, or the first frames wait."""
+        """Start the thread. Warm up the tracker's kernels before, else the first frames wait."""
         self._thread.start()
 
     def let_go(self) -> None:
-        """First pass of stopping: wakes the thread; never blocks."""
+        """First phase of stopping: wakes the thread; never blocks."""
         self._stopping.set()
         self._collector.close()
 
@@ -80,7 +79,7 @@ class PipelineLoop:
 
     @property
     def step_s(self) -> float:
-        """How long the step that runs has taken so far [s]; 0 between steps. From any thread."""
+        """Time of the current step so far [s]; 0 between steps. From any thread."""
         began_ns = self._began_ns
         return 0.0 if began_ns is None else seconds(monotonic_ns() - began_ns)
 
@@ -107,7 +106,7 @@ class PipelineLoop:
                 self._none(self._absence)
             if self._collector.idle:
                 garbage.idle(monotonic_ns())
-            self._recorder.turned()
+            self._recorder.count_turn()
 
     def _one(self, frames: FrameSet) -> None:
         number = self._collector.sets
@@ -122,10 +121,10 @@ class PipelineLoop:
             body = self._absence.came(body, monotonic_ns())
         self._bodies.put(BodySample(replace(track, body=body), self._skeleton, frames))
         now_ns = monotonic_ns()
-        self._recorder.published(frames, body, step_ns, now_ns, track.lost_reason)
+        self._recorder.record_body(frames, body, step_ns, now_ns, track.lost_reason)
         busy_ns = now_ns - start_ns
         others = self._others.share(now_ns)
-        self._recorder.judged(self._slowness.tracked(number, busy_ns, now_ns, others))
+        self._recorder.set_slowness(self._slowness.update(number, busy_ns, now_ns, others))
         self._spare(frames, number, busy_ns, now_ns)
 
     def _spare(self, frames: FrameSet, number: int, busy_ns: int, now_ns: int) -> None:
@@ -133,21 +132,21 @@ class PipelineLoop:
         if not isinstance(self._tracker, EffortTracker):
             return
         before = self._effort.effort
-        now = self._effort.tracked(frames.t_ns, number, busy_ns, now_ns)
+        now = self._effort.update(frames.t_ns, number, busy_ns, now_ns)
         if now is not before:
             self._tracker.set_effort(now)
             self._recorder.effort_changed(now)
 
     def _none(self, absence: Absence) -> None:
-        """No frames came for a while."""
-        body = absence.tell(monotonic_ns())
+        """Publish a body without frames, if one is due."""
+        body = absence.next_body(monotonic_ns())
         if body is not None:
             nothing = FrameSet(body.t_ns, {})
             self._bodies.put(BodySample(Track(body, self._shape), self._skeleton, nothing))
             self._recorder.absent(body)
 
     def _wait_s(self) -> float:
-        """How long to wait for frames before something else is due."""
+        """Timeout for the next frames, until another task is due."""
         due_ns = self._absence.due_ns if self._absence is not None else None
         if due_ns is None:
             return LOOK_UP_S

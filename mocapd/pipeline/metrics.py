@@ -1,4 +1,4 @@
-"""How the pipeline does, for the status line and the health message."""
+"""Metrics of the pipeline, for the status line and the health message."""
 
 import threading
 from dataclasses import dataclass, field
@@ -28,13 +28,12 @@ class Metrics:
     """A snapshot. Percentiles are over the last 300 frame sets (10 s at 30 Hz).
 
     rate_hz: bodies of frames published per second over the last 2 s; latency_ms: capture (the set's
-    `t_ns`) to after the last output; lag_ms: how much older a pose of somebody who moves is than that, see
-    BodyState.smoothing_lag_ns (0 of nobody); step_ms: the tracker alone; spread_ms: of the frames within a set;
-    published: bodies of frames since the start; sets_dropped: displaced by newer ones while the tracker
-    was busy; tracking: as told last, also by the clock while no frames come; latency_counts:
-    since the start; lost_reason: why nobody is tracked, where the tracker can tell; turns: how often the pipeline's thread
-    has come round, with frames or without; effort: how much of its work the tracker does;
-    slowness: that a large share of the frame sets is skipped lately, and why.
+    `t_ns`) to after the last output; lag_ms: additional delay by smoothing, see BodyState.smoothing_lag_ns (0 without a
+    person); step_ms: the tracker alone; spread_ms: of the frames within a set; published: bodies of frames since the
+    start; sets_dropped: displaced by newer ones while the tracker was busy; tracking: of the last body, also of one
+    without frames; latency_counts: since the start; lost_reason: why no person is tracked, where the tracker reports it;
+    turns: iterations of the pipeline's thread, with or without frames; effort: the tracker's effort; slowness: the
+    verdict that too many frame sets are skipped, with its cause.
     """
 
     rate_hz: float
@@ -74,7 +73,7 @@ class MetricsRecorder:
         self._effort = Effort.FULL
         self._slowness: Slowness | None = None
 
-    def published(
+    def record_body(
         self,
         frames: FrameSet,
         body: BodyState,
@@ -82,7 +81,7 @@ class MetricsRecorder:
         now_ns: int,
         lost_reason: LostReason | None = None,
     ) -> None:
-        """A body went out at `now_ns`, after a tracker's step of `step_ns`; lost_reason: as the tracker says."""
+        """Count a body published at `now_ns`, after a tracker's step of `step_ns`; lost_reason: the tracker's."""
         per_ms = NS_PER_S // 1000
         with self._lock:
             self._rate.add(now_ns)
@@ -97,27 +96,27 @@ class MetricsRecorder:
             self._lost_reason = lost_reason
 
     def absent(self, body: BodyState) -> None:
-        """A body went out that is of no frames."""
+        """Count a body published without frames."""
         with self._lock:
             self._tracking, self._lost_reason = body.tracking, None
 
     def effort_changed(self, effort: Effort) -> None:
-        """The tracker does so much of its work from now on."""
+        """Set the tracker's effort."""
         with self._lock:
             self._effort = effort
 
-    def judged(self, slowness: Slowness | None) -> None:
-        """Whether the tracker keeps up with the frame sets."""
+    def set_slowness(self, slowness: Slowness | None) -> None:
+        """Set the verdict on slowness; None: the tracker keeps up."""
         with self._lock:
             self._slowness = slowness
 
-    def turned(self) -> None:
-        """The pipeline's thread has come round."""
+    def count_turn(self) -> None:
+        """Count an iteration of the pipeline's thread."""
         with self._lock:
             self._turns += 1
 
     def snapshot(self, collected: CollectorCounts, now_ns: int) -> Metrics:
-        """The figures now, with the collector's counts."""
+        """The current metrics, with the collector's counts."""
         with self._lock:
             rate_hz = self._rate.rate_hz(now_ns)
             latency, step = self._latency_ms.samples(), self._step_ms.samples()

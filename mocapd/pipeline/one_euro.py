@@ -1,7 +1,7 @@
 """The One-Euro filter on vectors and on rotations, batched over joints.
 
-Casiez, Roussel, Vogel: 1 Euro Filter, CHI 2012. A first-order low-pass whose cutoff rises with the
-speed of the signal: still means smooth, fast means prompt. dt is in seconds and may vary.
+Casiez, Roussel, Vogel: 1 Euro Filter, CHI 2012. A first-order low-pass filter; its cutoff rises with the
+speed of the signal: smooth at rest, prompt in fast motion. dt is in seconds and may vary.
 """
 
 import math
@@ -64,7 +64,7 @@ class VectorOneEuro:
         step = sample - self._value
         a = smoothing_factor(p.speed_cutoff_hz, dt_s)
         self._velocity = self._velocity + a * (step / dt_s - self._velocity)
-        alpha = _adapted(p, self._velocity, dt_s)
+        alpha = _adaptive_factor(p, self._velocity, dt_s)
         self._value = self._value + alpha * step
         return self._value.copy()
 
@@ -92,11 +92,11 @@ class RotationOneEuro:
         step = rotations.log(rotations.multiply(sample_xyzw, rotations.inverse(self._value)))
         a = smoothing_factor(p.speed_cutoff_hz, dt_s)
         self._velocity = self._velocity + a * (step / dt_s - self._velocity)
-        turn = rotations.exp(_adapted(p, self._velocity, dt_s) * step)
+        turn = rotations.exp(_adaptive_factor(p, self._velocity, dt_s) * step)
         self._value = rotations.canonical(rotations.multiply(turn, self._value))
         return self._value.copy()
 
 
-def _adapted(params: OneEuroParams, velocity: Floats, dt_s: float) -> Floats:
+def _adaptive_factor(params: OneEuroParams, velocity: Floats, dt_s: float) -> Floats:
     speed = np.sqrt(np.vecdot(velocity, velocity))[..., None]
     return smoothing_factor(params.min_cutoff_hz + params.beta * speed, dt_s)

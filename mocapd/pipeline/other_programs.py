@@ -1,4 +1,4 @@
-"""How much of the machine's processors other programs use."""
+"""Measures the share of the machine's processors that other programs use."""
 
 import math
 import time
@@ -10,7 +10,7 @@ from mocapd.clock import NS_PER_S
 
 
 def _read_s() -> tuple[float, float, float]:
-    """Processor time since the start of all processors, of that busy, and of that of this process [s]."""
+    """Processor time since boot [s]: total, busy, and of this process."""
     times = psutil.cpu_times()
     idle_s = times.idle + getattr(times, "iowait", 0.0)
     # guest time is part of user time
@@ -20,7 +20,7 @@ def _read_s() -> tuple[float, float, float]:
 
 
 class OtherPrograms:
-    """Measured over a second and more. `share` may be called as often as one likes, by one thread."""
+    """Measured over a second or more. Call `share` at any rate, from one thread."""
 
     def __init__(self, read_s: Callable[[], tuple[float, float, float]] = _read_s) -> None:
         self._read_s = read_s
@@ -29,7 +29,7 @@ class OtherPrograms:
         self._share = math.nan
 
     def share(self, now_ns: int) -> float:
-        """0..1 of all processors, lately; NaN before the first second is over."""
+        """The recent share 0..1 of all processors; NaN within the first second."""
         if self._before is not None and now_ns - self._at_ns < NS_PER_S:
             return self._share
         before, self._before, self._at_ns = self._before, self._read_s(), now_ns

@@ -1,4 +1,4 @@
-"""Before the first frame: let the tracker do its work once, so that the first frames need not wait."""
+"""Warm-up of a tracker before the first frame, so that the first frames need not wait."""
 
 from collections.abc import Callable, Mapping
 
@@ -9,7 +9,7 @@ from mocapd.clock import NS_PER_S
 from mocapd.tracking.base import Tracker
 from mocapd.types import Bytes, Camera, Frame, FrameSet, Rig
 
-STEPS = 8  # the person is found in the first, believed in a few, followed in the rest
+STEPS = 8  # the first finds the person, a few confirm it, the rest track it
 _PERIOD_NS = NS_PER_S // 30
 
 
@@ -18,23 +18,22 @@ def rehearse(
     shape: BodyShape,
     rig: Rig | None,
     pictures: Mapping[str, Bytes],
-    tell: Callable[[int, int], None],
+    progress: Callable[[int, int], None],
 ) -> None:
-    """Step it through still pictures, of a wearer of this shape, and reset it.
+    """Step it through still pictures of a wearer of this shape, and reset it.
 
-    Its kernels are compiled if that never happened on this machine, which takes half a minute, else
-    loaded, and its memory is touched. pictures: by camera, one (h,w,3) BGR with the person in it;
-    without one, or with one of another size than the camera's, it is black. `tell` hears of steps
-    done, in all.
+    This loads its kernels (or compiles them on the first start on a machine, half a minute) and touches its memory.
+    pictures: by camera, one (h,w,3) BGR with the person in it; black for a camera without one, or with one of another
+    size. `progress` gets the number of steps done, and of all.
     """
     cameras = rig.cameras if rig else ()
-    seen = {camera.name: _picture(camera, pictures.get(camera.name)) for camera in cameras}
-    tell(0, STEPS)
+    stills = {camera.name: _picture(camera, pictures.get(camera.name)) for camera in cameras}
+    progress(0, STEPS)
     for step in range(STEPS):
         t_ns = step * _PERIOD_NS
-        frames = {name: Frame(name, step, t_ns, pixels) for name, pixels in seen.items()}
+        frames = {name: Frame(name, step, t_ns, pixels) for name, pixels in stills.items()}
         shape = tracker.step(FrameSet(t_ns, frames), shape).shape
-        tell(step + 1, STEPS)
+        progress(step + 1, STEPS)
     tracker.reset()
 
 

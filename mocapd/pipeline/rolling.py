@@ -1,4 +1,4 @@
-"""Figures over the recent past: a rate over a window of time, percentiles over a number of samples."""
+"""Statistics of the recent past: a rate over a time window, percentiles over a number of samples."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from mocapd.clock import NS_PER_S
 
 @dataclass(frozen=True, slots=True)
 class Percentiles:
-    """Of the remembered samples, in their unit; NaN before the first."""
+    """Of the stored samples, in their unit; NaN before the first."""
 
     median: float
     p95: float
@@ -39,26 +39,26 @@ def percentiles(samples: tuple[float, ...]) -> Percentiles:
 
 
 class RollingRate:
-    """Events per second over the last `window_s` [s]; falls to 0 when they cease. Not thread-safe."""
+    """Events per second over the last `window_s` [s]; falls to 0 without events. Not thread-safe."""
 
     def __init__(self, window_s: float = 2.0) -> None:
         self._window_ns = round(window_s * NS_PER_S)
         self._times_ns: deque[int] = deque()
 
     def add(self, now_ns: int) -> None:
-        """An event happens at `now_ns`."""
+        """Count an event at `now_ns`."""
         self._times_ns.append(now_ns)
         self._forget(now_ns)
 
     def rate_hz(self, now_ns: int) -> float:
-        """Intervals per second between the remembered events; silence longer than them lowers it."""
+        """Intervals per second between the stored events; a pause longer than them lowers it."""
         self._forget(now_ns)
         n = len(self._times_ns)
         if n < 2:
             return 0.0
         first_ns, last_ns = self._times_ns[0], self._times_ns[-1]
         interval_ns = (last_ns - first_ns) / (n - 1)
-        # within one usual interval after the last event nothing is missing yet
+        # within one mean interval after the last event no event is overdue
         span_ns = max(last_ns, now_ns - interval_ns) - first_ns
         return (n - 1) * NS_PER_S / span_ns if span_ns > 0 else 0.0
 

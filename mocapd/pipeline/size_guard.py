@@ -1,4 +1,4 @@
-"""Keeps pictures from the tracker that do not fit its calibration, as while a setup tries another size."""
+"""Drops pictures of another size than the tracker's calibration, as while a setup tries another size."""
 
 from collections.abc import Mapping
 
@@ -7,16 +7,16 @@ from mocapd.types import Frame
 
 
 class SizeGuard:
-    """Between a hub and whoever works with the frames. A camera of another size takes no part until it
-    fits again; the others go on. Its capture thread tells of it."""
+    """Between a hub and a subscriber. Drops a camera's frames while their size differs, and logs it in the capture
+    thread; the other cameras continue."""
 
     def __init__(self, sizes_px: Mapping[str, tuple[int, int]], onwards: TakesFrames) -> None:
-        """sizes_px: width and height by camera; one that is not named may have any."""
+        """sizes_px: width and height by camera; other cameras may have any size."""
         self._sizes_px = sizes_px
         self._onwards = onwards
 
     def put(self, frame: Frame) -> None:
-        """Hand in a frame."""
+        """Pass a frame on, or drop it."""
         got_px = frame.pixels.shape[1::-1]
         want_px = self._sizes_px.get(frame.camera, got_px)
         if got_px == want_px:

@@ -1,4 +1,4 @@
-"""Verdict "too slow": the tracker skips a large share of the frame sets, with the cause and what helps."""
+"""Detects that the tracker skips a large share of the frame sets, and names the cause and the remedy."""
 
 import math
 from collections import deque
@@ -10,9 +10,9 @@ from mocapd.clock import nanoseconds, seconds
 
 @dataclass(frozen=True, slots=True)
 class SlownessParams:
-    """window_s: over which skipped frame sets are counted; fewest: tracked frame sets that a verdict needs, also older ones;
-    begin, end: share of skipped frame sets at which the verdict begins and ends; others: share of the processors from
-    which other programs count as the cause."""
+    """window_s: averaging window; fewest: tracked frame sets needed for a verdict, if need be from before the window;
+    begin, end: share of skipped frame sets at which the verdict begins and ends (hysteresis); others: other programs'
+    share of the processors from which they count as the cause."""
 
     window_s: float = 6.0
     fewest: int = 4
@@ -35,7 +35,7 @@ class Slowness:
 
     @property
     def what(self) -> str:
-        """The verdict and its cause, for people."""
+        """The verdict and its cause, for display."""
         verdict = (
             f"too slow: {100.0 * self.skipped:.0f} % of the frame sets are skipped "
             f"({self.tracked_hz:.1f} of {self.made_hz:.0f} a second are tracked)"
@@ -46,7 +46,7 @@ class Slowness:
 
     @property
     def fix(self) -> str:
-        """What helps, for people."""
+        """The remedy, for display."""
         less = "lower fps_hz of the cameras, take smaller pictures or fewer cameras"
         if self.others >= self.params.others:
             return f"close other programs, or {less}"
@@ -54,14 +54,14 @@ class Slowness:
 
 
 class SlownessWatch:
-    """Judges the last seconds after each frame set; its times are the caller's, so that it needs no clock."""
+    """Judges the last seconds after each frame set, with times from the caller: it needs no clock."""
 
     def __init__(self, params: SlownessParams | None = None) -> None:
         self._params = params if params is not None else SlownessParams()
         self._sets: deque[tuple[int, int, int]] = deque()  # end [ns], number, busy [ns]
         self._is_slow = False
 
-    def tracked(self, number: int, busy_ns: int, now_ns: int, others: float) -> Slowness | None:
+    def update(self, number: int, busy_ns: int, now_ns: int, others: float) -> Slowness | None:
         """The verdict after the number-th frame set, which took busy_ns until now_ns; None: it keeps up. others: see
         Slowness."""
         p, sets = self._params, self._sets
@@ -70,14 +70,13 @@ class SlownessWatch:
             sets.popleft()
         if len(sets) < p.fewest:
             return None
-        numbers = [one[1] for one in sets]
-        gaps = [later - before for before, later in pairwise(numbers)]
-        # without the longest gap: a single pause, as for a kernel that compiles, is no slow machine
-        made, kept = sum(gaps) - max(gaps), len(gaps) - 1
-        skipped = 1.0 - kept / max(made, kept)
+        gaps = [later[1] - before[1] for before, later in pairwise(sets)]
+        # without the longest gap: a single pause, such as for compiling a kernel, is no slow machine
+        made, tracked = sum(gaps) - max(gaps), len(gaps) - 1
+        skipped = 1.0 - tracked / max(made, tracked)
         self._is_slow = skipped > (p.end if self._is_slow else p.begin)
         if not self._is_slow:
             return None
         span_s = max(seconds(now_ns - sets[0][0]), 1e-3)
-        busy_ms = sorted(one[2] for one in sets)[len(sets) // 2] / 1e6
+        busy_ms = sorted(busy for _, _, busy in sets)[len(sets) // 2] / 1e6
         return Slowness(skipped, len(gaps) / span_s, sum(gaps) / span_s, busy_ms, others, p)

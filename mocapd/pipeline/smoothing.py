@@ -18,8 +18,8 @@ REST_AFTER_S = 0.5  # a longer gap between bodies starts the filters afresh [s]
 
 @dataclass(frozen=True, slots=True)
 class SmoothingPreset:
-    """The two filters of a preset: of the root's position and of the bones' global rotations; lag_s: behind an arm
-    that swings, as measured below [s]."""
+    """The two filters of a preset: of the root's position and of the bones' global rotations; lag_s: for a swinging arm,
+    as measured below [s]."""
 
     root: OneEuroParams
     bones: OneEuroParams
@@ -47,14 +47,14 @@ PRESETS: Mapping[str, SmoothingPreset | None] = MappingProxyType(
 
 
 class Smoother:
-    """Smooths the bodies of one person in order of time; `lost` and gaps in time start it afresh. Its lag adds to that of
-    the tracker's own filter.
+    """Smooths the bodies of one person in order of time; `lost` and gaps in time reset it. Its lag adds to that of the
+    tracker's own filter.
 
     `skeleton` may be replaced between steps, when the tracker has refined its proportions.
     """
 
     def __init__(self, preset: str, skeleton: Skeleton) -> None:
-        """Raises ConfigError for a preset that does not exist."""
+        """Raises ConfigError for an unknown preset."""
         if preset not in PRESETS:
             raise ConfigError(
                 f"no preset {preset!r}", "smoothing.preset", f"one of: {', '.join(PRESETS)}"
@@ -73,7 +73,7 @@ class Smoother:
         self._t_ns = None
 
     def step(self, body: BodyState) -> BodyState:
-        """The body with its pose and joints smoothed; everything else as it came."""
+        """The body with its pose and joints smoothed; everything else unchanged."""
         if self._filters is None:
             return body
         if body.tracking is Tracking.LOST or body.pose is None:

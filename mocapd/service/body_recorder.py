@@ -75,7 +75,7 @@ class BodyRecorder:
                 while not (self._over.is_set() and self._waiting.empty()):
                     with contextlib.suppress(queue.Empty):
                         self._write(self._waiting.get(timeout=_LOOK_S))
-                    self._writer.beat(monotonic_ns())
+                    self._writer.flush_if_due(monotonic_ns())
         except CannotCreateError as error:
             self.trouble = str(error)
 
@@ -85,7 +85,7 @@ class BodyRecorder:
             self._skeleton = sample.skeleton
             stature_m = sample.track.shape.stature_m
             rest = rest_skeleton(sample.skeleton, instance=self._instance, stature_m=stature_m)
-            self._writer.tell(rest, sample.body.t_ns + unix_ns)
+            self._writer.add_state(rest, sample.body.t_ns + unix_ns)
         frame = skeleton_frame(
             sample.body,
             sample.skeleton,

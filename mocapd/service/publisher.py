@@ -60,7 +60,7 @@ class Publisher:
     def tell(self, message: StateMessage) -> None:
         """Tell every output."""
         for sink in self._sinks:
-            sink.tell(message)
+            sink.send_state(message)
 
     def recenter(self) -> Facing:
         """Tell every output that the person faces forward now. Raises UnavailableError when it is not seen."""

@@ -26,7 +26,7 @@ from mocapd.session.camera_inputs import CameraInput, camera_inputs, in_rig_orde
 from mocapd.session.tracker_setup import Progress, cached, ready_tracker
 from mocapd.shirt.colour.model_pictures import read_model, stroked_folder, stroked_image
 from mocapd.shirt.colour.strokes import read_labelled
-from mocapd.trackers.registry import entry, require_known
+from mocapd.trackers.registry import entry, require_calibration
 from mocapd.tracking.base import Tracker
 from mocapd.types import Rig
 
@@ -92,7 +92,7 @@ def plan_session(config: Config) -> SessionPlan:
     known = known.overlaid(Calibration(shirt=_configured_shirt(config.shirt.colour_model, cameras)))
     plan = SessionPlan(config, cameras, origin, known, rig_source, calibrated)
     if not origin and not plan.assumes_rig:
-        require_known(config.tracker.name, known)
+        require_calibration(config.tracker.name, known)
     return plan
 
 

@@ -87,7 +87,7 @@ def _pooled(resources: Resources) -> Iterator[Resources]:
     """With threads to make caches, and a log to tell of them."""
     pool = ThreadPoolExecutor(_THREADS)
     try:
-        yield replace(resources, map_chunks=pool.map, tell=_log.warning, each=each_camera())
+        yield replace(resources, map_chunks=pool.map, warn=_log.warning, each=each_camera())
     finally:
         # who was told to end does not wait for all that is queued
         pool.shutdown(wait=False, cancel_futures=True)

@@ -1,4 +1,4 @@
-"""The trackers that exist: one line each in TRACKERS."""
+"""The table of trackers: one entry each in TRACKERS."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -28,25 +28,24 @@ _LEAST_BASELINE_M = 0.02
 
 
 def _quiet(_: object) -> None:
-    """Nobody watches, or nothing is to be done."""
+    """Does nothing."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Resources:
-    """What any tracker may use, whoever is tracked.
+    """Resources of any tracker.
 
-    cache_dir: where the pose database is kept, progress(0..1) while it is made, map_chunks: `map`, or
-    that of a thread pool, tell: hears a line about a cache that was made anew or cannot be kept, or of a tracker that
-    must be done without; tracking: when a person counts as lost, None for the defaults; params: other numbers than a
-    tracker's own, by its name, for studies; each: of a tracker's cameras;
-    now_ns: a clock, by which work that would take too long at one frame set goes on at the next; for recordings it
-    stands still, as they wait as long as it takes.
+    cache_dir: folder of the pose database; progress(0..1): called while it is built; map_chunks: `map`, or that of a
+    thread pool; warn: gets a line about a rebuilt or unwritable cache, or about a cue that is left out; tracking: when a
+    person counts as lost, None for the defaults; params: a tracker's parameters by its name, for studies; each: map over
+    a tracker's cameras; now_ns: the clock for spreading long work over several frame sets; for recordings it stands
+    still, because they wait.
     """
 
     cache_dir: Path = field(default_factory=Path)
     progress: Callable[[float], None] = _quiet
     map_chunks: MapChunks = map
-    tell: Callable[[str], None] = _quiet
+    warn: Callable[[str], None] = _quiet
     tracking: TrackingStateParams | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
     each: Each = in_turn
@@ -55,13 +54,12 @@ class Resources:
 
 @dataclass(frozen=True, slots=True)
 class TrackerEntry:
-    """`build` makes the tracker from what is known, its params (None: its own) and the resources; it imports it only then.
+    """`build` makes the tracker from the calibration, its params (None: the defaults) and the resources, importing it then.
 
-    lacks: given what is known and the names
-    of the cameras at hand, why it cannot track, empty when it can; sees: whether it looks at the pictures, so
-    that an empty room must give `lost`; reads_shirt: whether its evidence is the shirt's colour ids, from
-    which a setup measures; reads_outline: whether it is all of the body, whatever is worn; make_caches: what it
-    keeps in the cache folder, made if need be; caches: the names of those files.
+    lacks: the reason why it cannot track with this calibration and these cameras, or empty; sees: whether it uses the
+    pictures, so that an empty room must give `lost`; reads_shirt: whether its evidence is the shirt's colour ids, which
+    a setup measures with; reads_outline: whether it is the whole body in any clothes; make_caches: makes its missing
+    cache files; caches: their names.
     """
 
     build: Callable[[Calibration, Any, Resources], Tracker]
@@ -78,7 +76,7 @@ def _nothing_lacks(_calibration: Calibration, _cameras: Collection[str]) -> str:
 
 
 def _rig_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
-    """For trackers that one calibrated camera suffices."""
+    """For trackers that need one calibrated camera."""
     if calibration.rig is None:
         return "needs to know where the cameras are"
     if not set(calibration.rig.names) & set(cameras):
@@ -87,7 +85,7 @@ def _rig_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
 
 
 def _pair_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
-    """For trackers that two calibrated cameras in different places suffice."""
+    """For trackers that need two calibrated cameras in different places."""
     missing = _rig_lacks(calibration, cameras)
     if missing or calibration.rig is None:
         return missing
@@ -105,7 +103,7 @@ def _pair_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
 
 
 def _ring_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
-    """For trackers by the visual hull, which of two cameras' silhouettes is several times a body."""
+    """For trackers by the visual hull, which needs three cameras: of two it is several times a body's volume."""
     missing = _pair_lacks(calibration, cameras)
     if missing or calibration.rig is None:
         return missing
@@ -114,7 +112,7 @@ def _ring_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
     return ""
 
 
-def _canned(_calibration: Calibration, params: Any, _resources: Resources) -> Tracker:
+def _build_canned(_calibration: Calibration, params: Any, _resources: Resources) -> Tracker:
     from mocapd.trackers.canned.tracker import CannedTracker
 
     return CannedTracker(params)
@@ -128,14 +126,14 @@ def _database(resources: Resources) -> "PoseDatabase":
         resources.cache_dir, progress=resources.progress, map_chunks=resources.map_chunks
     )
     if loaded.built and stale:
-        resources.tell(f"{loaded.reason}, so it was made anew")
+        resources.warn(f"{loaded.reason}, so it was rebuilt")
     if loaded.warning:
-        resources.tell(loaded.warning)
+        resources.warn(loaded.warning)
     return loaded.database
 
 
 def _lacks(name: str, calibration: Calibration, cameras: Collection[str]) -> Mapping[str, str]:
-    """By each cue of this profile that the wearer may have, what it lacks."""
+    """For each cue of this profile that the wearer may have: the reason why it cannot track, or empty."""
     profile = PROFILES[name]
     lacking = {}
     if profile.shirt and (calibration.wearer.has_shirt or not profile.clothes):
@@ -146,7 +144,7 @@ def _lacks(name: str, calibration: Calibration, cameras: Collection[str]) -> Map
 
 
 def _profile(name: str) -> TrackerEntry:
-    """A body tracker, which is content with any of its cues."""
+    """The entry of a body tracker, which needs at least one of its cues."""
     profile = PROFILES[name]
 
     def lacks(calibration: Calibration, cameras: Collection[str]) -> str:
@@ -159,7 +157,7 @@ def _profile(name: str) -> TrackerEntry:
         cameras = calibration.rig.names if calibration.rig else ()
         lacking = _lacks(name, calibration, cameras)
         if lacking.get("clothes") and "shirt" in lacking and len(cameras) > 1:
-            resources.tell(
+            resources.warn(
                 f"legs and head are done without: the cue 'clothes' {lacking['clothes']}"
             )
         shirt = "shirt" in lacking and (not lacking["shirt"] or "clothes" not in lacking)
@@ -201,7 +199,7 @@ def _rao_hodges(calibration: Calibration, params: Any, resources: Resources) -> 
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
     {
         "auto": _profile("auto"),
-        "canned": TrackerEntry(_canned, _nothing_lacks, sees=False),
+        "canned": TrackerEntry(_build_canned, _nothing_lacks, sees=False),
         "shirt": _profile("shirt"),
         "markerless": _profile("markerless"),
         "hecht2009": TrackerEntry(
@@ -246,23 +244,23 @@ def entry(name: str) -> TrackerEntry:
 
 
 def measuring_tracker(preferred: str, has_shirt: bool) -> str:
-    """The tracker by whose evidence a setup is checked: of the shirt, or without one of the whole body."""
+    """The tracker for checking a setup: by the shirt, or without one by the whole body."""
     if has_shirt:
         return shirt_tracker(preferred)
     if entry(preferred).reads_outline:
         return preferred
-    return next(name for name, one in TRACKERS.items() if one.reads_outline)
+    return next(name for name, tracker in TRACKERS.items() if tracker.reads_outline)
 
 
 def shirt_tracker(preferred: str) -> str:
     """The preferred tracker if it reads the shirt, else the first that does: a setup's measurements need it."""
     if entry(preferred).reads_shirt:
         return preferred
-    return next(name for name, one in TRACKERS.items() if one.reads_shirt)
+    return next(name for name, tracker in TRACKERS.items() if tracker.reads_shirt)
 
 
-def require_known(name: str, calibration: Calibration) -> None:
-    """That this tracker is told what it needs. Raises ConfigError."""
+def require_calibration(name: str, calibration: Calibration) -> None:
+    """Raises ConfigError if this tracker cannot track with the calibration."""
     reason = entry(name).lacks(calibration, calibration.rig.names if calibration.rig else ())
     if reason:
         raise ConfigError(
@@ -273,19 +271,16 @@ def require_known(name: str, calibration: Calibration) -> None:
 
 
 def build(name: str, calibration: Calibration, resources: Resources) -> Tracker:
-    """The tracker of this name. Raises ConfigError when there is none, or it is not
-    told what it needs."""
-    require_known(name, calibration)
-    found = entry(name)
-    return found.build(calibration, resources.params.get(name), resources)
+    """The tracker of this name. Raises ConfigError for an unknown name or an insufficient calibration."""
+    require_calibration(name, calibration)
+    return entry(name).build(calibration, resources.params.get(name), resources)
 
 
 def make_caches(name: str, resources: Resources) -> None:
-    """What this tracker keeps in the cache folder, made if need be."""
+    """Make this tracker's missing cache files."""
     entry(name).make_caches(resources)
 
 
 def has_caches(name: str, cache_dir: Path) -> bool:
-    """Whether there are files of all that this tracker keeps in the cache folder; whether they fit, only
-    `make_caches` can tell."""
-    return all(is_file(cache_dir / one) for one in entry(name).caches)
+    """True if all of this tracker's cache files exist; only `make_caches` checks that they are current."""
+    return all(is_file(cache_dir / file_name) for file_name in entry(name).caches)

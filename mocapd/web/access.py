@@ -1,14 +1,14 @@
-"""Who may see the page: whoever has the token, from this machine, and from no other site.
+"""Access control of the page: a token, and the page's own Host and Origin.
 
-Other pages in the same browser can reach 127.0.0.1 too, by a fetch, a WebSocket or a name of their
-own that they let point here (DNS rebinding). So next to the token, Host and Origin must be ours.
+Other pages in the same browser can reach 127.0.0.1 too, by a fetch, a WebSocket or DNS rebinding. So in addition to the
+token, Host and Origin must be ours.
 
-A browser sends a cookie to every port of this machine, also to those of other users. So the page has
-a place of its own, a path that nobody can guess: its cookie is for that path alone, and holds a secret
-of the browser's session, not the token. Programs give the token, with or without that path.
+A browser sends a cookie to every port of this machine, also to other users' servers. So the page is below a random path,
+and its cookie is limited to that path and holds a session secret instead of the token. Programs use the token, with or
+without that path.
 
-Sites that the user has allowed may have the frames' WebSocket and nothing else: see games.frames_access. So may a Prometheus
-have its figures: see metrics_access.
+Sites in `web.allow_origins` get the frames' WebSocket only: see games.frames_access. A Prometheus gets the metrics only:
+see metrics_access.
 """
 
 import logging
@@ -25,7 +25,7 @@ from mocapd.web.metrics_access import MetricsAccess
 from mocapd.web.refusal import Refusal, refusal_page
 
 TOKEN = "token"  # its name in the URL's query
-LET_IN = "let_in"  # in the scope's state, for the connection that asked
+LET_IN = "let_in"  # in the scope's state, for an authorised connection
 # Without form-action, base-uri and frame-ancestors, default-src would leave those three open.
 CONTENT_SECURITY_POLICY = (
     "default-src 'self'; img-src 'self' blob:; connect-src 'self'; frame-ancestors 'none'; "
@@ -35,21 +35,21 @@ HEADERS = {
     "content-security-policy": CONTENT_SECURITY_POLICY,
     "cross-origin-resource-policy": "same-origin",  # other ports of this machine are the same site
     "x-content-type-options": "nosniff",
-    "referrer-policy": "no-referrer",  # or a link would carry the token away
+    "referrer-policy": "no-referrer",  # else a link would leak the token
     "cache-control": "no-store",
 }
 LONGEST_ADDRESS = 8 << 10  # path and query of a request [bytes]
 _WS_POLICY_VIOLATION = 1008
-_LONGEST_LOGGED = 100  # of a header that a stranger wrote [characters]
+_LONGEST_LOGGED = 100  # of an untrusted header [characters]
 
 _log = logging.getLogger(__name__)
 
 
 class Access:
-    """ASGI middleware: lets in who may see the page, and puts the protecting headers on every answer.
+    """ASGI middleware: authorises requests, and adds the security headers to every answer.
 
-    The token is in the query of the URL that was printed; `/` leads from there to the page's place,
-    where a cookie lets in from then on.
+    The printed URL has the token in its query; `/` redirects from there to the page's random path, which sets a cookie
+    for the later requests.
     """
 
     def __init__(
@@ -67,12 +67,12 @@ class Access:
         self._place = f"/{secrets.token_urlsafe(9)}"
         self._hosts = frozenset({f"127.0.0.1:{port}", f"localhost:{port}"})
         self._origins = frozenset(f"http://{host}" for host in self._hosts)
-        # cookies are shared by all ports of a machine: several daemons must not overwrite each other's
+        # all ports of a machine share cookies: several daemons must not overwrite each other's
         self._cookie = f"mocapd-{port}"
-        self._logged: set[str] = set()  # refusals that were told of
+        self._logged: set[str] = set()  # refusals that are in the log already
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer, or hand on to the app."""
+        """Refuse the request, or pass it to the app."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
@@ -84,12 +84,12 @@ class Access:
         has_cookie = inside and _same(connection.cookies.get(self._cookie, ""), self._session)
         cookie = ""
         if inside and has_token and scope["type"] == "http":
-            # so that the token need not stay in the address bar
+            # replaces the token, which the page removes from the address bar
             cookie = (
                 f"{self._cookie}={self._session}; HttpOnly; SameSite=Strict; Path={self._place}/"
             )
 
-        async def protected(message: Message) -> None:
+        async def send_with_headers(message: Message) -> None:
             if message["type"] in ("http.response.start", "websocket.http.response.start"):
                 headers = MutableHeaders(scope=message)
                 headers.update(HEADERS)
@@ -103,21 +103,21 @@ class Access:
             scope["state"][LET_IN] = True
             app: ASGIApp = self._app
             if scope["type"] == "http" and scope["path"] == "/":
-                # With the token again: a browser that a file led here would not send along a cookie
-                # that is SameSite=Strict. What follows # in the address it keeps by itself.
+                # With the token again: after a redirect from a file, a browser does not send a SameSite=Strict
+                # cookie. It preserves the part after # by itself.
                 app = RedirectResponse(f"{self._place}/?{TOKEN}={self._token}", 303)
-            await app(scope, receive, protected)
+            await app(scope, receive, send_with_headers)
             return
         self._log_once(refusal, connection)
         if scope["type"] == "http" or "websocket.http.response" in scope.get("extensions", {}):
             answer = HTMLResponse(refusal_page(refusal), refusal.status)
-            await answer(scope, receive, protected)
+            await answer(scope, receive, send_with_headers)
         else:
             await send({"type": "websocket.close", "code": _WS_POLICY_VIOLATION})
 
     def _log_once(self, refusal: Refusal, connection: HTTPConnection) -> None:
-        """Another site, or another name for this machine: each kind once, as a page may ask without end. A token that does
-        not do is none of these: a window that was left open since another start has one."""
+        """Log a request from another site or by another host name, each kind once, because a page may repeat it for ever.
+        Invalid tokens are not logged: a window left open since an earlier start sends one."""
         if refusal.status != 403 or refusal.what in self._logged:
             return
         self._logged.add(refusal.what)
@@ -131,7 +131,7 @@ class Access:
             refusal.what,
         )
 
-    def _refusal(self, connection: HTTPConnection, known: bool) -> Refusal | None:
+    def _refusal(self, connection: HTTPConnection, has_secret: bool) -> Refusal | None:
         if (
             len(connection.scope["raw_path"]) + len(connection.scope["query_string"])
             > LONGEST_ADDRESS
@@ -144,7 +144,7 @@ class Access:
             return self._frames.refusal(connection)
         if any(origin not in self._origins for origin in connection.headers.getlist("origin")):
             return Refusal(403, "Another site asked for this.")
-        if not known:
+        if not has_secret:
             return Refusal(
                 401, "The address has no valid token. Each start of mocapd makes a new one."
             )

@@ -1,4 +1,4 @@
-"""What is at which address of the page."""
+"""The page's routes."""
 
 import os
 from collections.abc import Awaitable, Callable
@@ -14,6 +14,7 @@ from starlette.websockets import WebSocket
 import mocapd
 from mocapd.boundary.parsing import decode_json
 from mocapd.errors import MalformedError, MocapdError
+from mocapd.web.editor_lease import EditorLease
 from mocapd.web.encoder import PictureEncoder
 from mocapd.web.games.frames_access import PATH as FRAMES_PATH
 from mocapd.web.games.frames_access import FramesAccess
@@ -26,12 +27,11 @@ from mocapd.web.links.wizard_link import WizardLink
 from mocapd.web.metrics_access import PATH as METRICS_PATH
 from mocapd.web.recording_routes import RecordingRoutes
 from mocapd.web.request_body import BodyTooLongError, read_body
-from mocapd.web.seat import Seat
 from mocapd.web.shown_json import as_json
 from mocapd.web.status_page import SetupAnswer, SetupRequest, Status
 
 PAGE_DIR = Path(__file__).with_name("page")
-# given here, as what the system believes of a suffix differs, and nosniff is strict about scripts
+# explicit, because systems map suffixes differently, and nosniff is strict about scripts
 MEDIA_TYPES = {
     ".html": "text/html",
     ".css": "text/css",
@@ -49,7 +49,7 @@ def make_app(
     frames: FramesAccess | None = None,
     with_metrics: bool = False,
 ) -> Starlette:
-    """The routes; who may use them is decided before (see access)."""
+    """The routes; `access` has authorised their requests."""
     made = _Routes(host, encoder, frames or FramesAccess())
     routes = made.routes()
     if with_metrics:
@@ -60,10 +60,10 @@ def make_app(
 class _Routes:
     def __init__(self, host: Host, encoder: PictureEncoder, frames: FramesAccess) -> None:
         self._host, self._encoder, self._frames_access = host, encoder, frames
-        self._seat = Seat()
-        self._sockets = 0  # that are open, of our own page
-        self._games = 0  # and of allowed sites, which take no room of the page's
-        # all of them, now: no path is ever made of what somebody asks for
+        self._lease = EditorLease()
+        self._sockets = 0  # open WebSockets of our own page
+        self._games = 0  # and of allowed sites, which have a limit of their own
+        # loaded now: no path is ever built from a request
         self._files = {
             path.name: (path.read_bytes(), MEDIA_TYPES[path.suffix])
             for path in PAGE_DIR.iterdir()
@@ -86,12 +86,12 @@ class _Routes:
         ]
 
     async def _index(self, _request: Request) -> Response:
-        return self._named("index.html")
+        return self._page_file("index.html")
 
     async def _file(self, request: Request) -> Response:
-        return self._named(request.path_params["name"])
+        return self._page_file(request.path_params["name"])
 
-    def _named(self, name: str) -> Response:
+    def _page_file(self, name: str) -> Response:
         if name not in self._files:
             return PlainTextResponse("no such file", 404)
         data, media_type = self._files[name]
@@ -120,7 +120,7 @@ class _Routes:
         )
 
     async def _setup(self, request: Request) -> Response:
-        """Begin a setup, or go on with the one there is; with {step}, at that step."""
+        """Start a setup, or continue the current one; with {step}, at that step."""
         try:
             body = await read_body(request)
             asked = decode_json(body or b"{}", SetupRequest)
@@ -132,14 +132,14 @@ class _Routes:
         try:
             wizard = await run_in_threadpool(self._host.setup)
         except MocapdError as error:
-            return _refused(error)
+            return _error_response(error)
         if asked.step is not None:
             wizard.send("go", {"step": asked.step})
         return _json(SetupAnswer())
 
     async def metrics(self, _request: Request) -> Response:
-        """For Prometheus."""
-        # here, as few ask for it, and the library takes a tenth of a second
+        """The metrics for Prometheus."""
+        # imported here: it takes a tenth of a second, and few users need it
         from mocapd.web.metrics_text import MEDIA_TYPE, metrics_text
 
         return Response(
@@ -148,7 +148,7 @@ class _Routes:
         )
 
     async def _wizard_link(self, socket: WebSocket) -> None:
-        await self._if_room(socket, WizardLink(socket, self._host, self._seat).run)
+        await self._if_room(socket, WizardLink(socket, self._host, self._lease).run)
 
     async def _pictures(self, socket: WebSocket) -> None:
         await self._if_room(socket, lambda: picture_link(socket, self._host, self._encoder))
@@ -180,7 +180,7 @@ class _Routes:
             self._sockets -= 1
 
 
-def _refused(error: MocapdError) -> Response:
+def _error_response(error: MocapdError) -> Response:
     return _json(SetupAnswer(error.what, error.where, error.fix), 503)
 
 

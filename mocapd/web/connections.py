@@ -1,8 +1,8 @@
-"""How many connections the page has at once, and how long one may keep it waiting.
+"""Limits the number of connections to the page, and their timeouts.
 
-Any process of the machine can connect, without the token. Whoever is not let in yet makes room for
-those who come later, the oldest first, so that silent ones keep nobody out and the daemon keeps its
-descriptors. uvicorn itself closes only a connection that is silent after an answer.
+Any process of the machine can connect without the token. So above the limit the oldest unauthorised connection is
+closed: idle ones then cannot block the page or use up descriptors. uvicorn itself closes only connections that are idle
+after an answer.
 """
 
 import asyncio
@@ -15,15 +15,15 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 from mocapd.web.access import LET_IN
 
 MOST = 64  # connections at once
-ACCEPTED_AT_ONCE = 16  # their requests are heard before as many as MOST have come after them
-QUEUE = 512  # of connections that the system keeps for us meanwhile
+ACCEPTED_AT_ONCE = 16  # their requests are read before MOST further connections arrive
+QUEUE = 512  # the system's backlog of connections
 LONGEST_HEAD = 16 << 10  # address and headers of a request [bytes]
 REQUEST_S = 5.0  # from its first byte, or from connecting, until a request is whole [s]
-STALLED_S = 20.0  # how long somebody may not read what was sent [s]
+STALLED_S = 20.0  # timeout of a client that does not read [s]
 
 
 class _Connection(asyncio.Protocol):
-    """What both protocols have in common; the rest of their names is uvicorn's."""
+    """The common part of both protocols; the other names are uvicorn's."""
 
     loop: asyncio.AbstractEventLoop
     transport: asyncio.Transport
@@ -34,28 +34,28 @@ class _Connection(asyncio.Protocol):
     _stalled: asyncio.TimerHandle | None = None
 
     def drop(self) -> None:
-        """Close it now, whatever is still to be sent."""
+        """Close it now, and discard unsent data."""
         self.dropped = True
         self.transport.abort()
 
     @property
     def in_use(self) -> bool:
-        """Whether it belongs to somebody who was let in."""
-        scope = getattr(self, "scope", None)  # there is none before a request
+        """True for an authorised connection that is not closing."""
+        scope = getattr(self, "scope", None)  # missing before a request
         return bool(scope and scope["state"].get(LET_IN)) and not self.transport.is_closing()
 
     def pause_writing(self) -> None:
-        """More is to be sent than the system takes: nobody reads."""
+        """The send buffer is full: the client does not read."""
         super().pause_writing()
         self._stalled = self.loop.call_later(STALLED_S, self.drop)
 
     def resume_writing(self) -> None:
-        """It goes on."""
+        """The client reads again."""
         super().resume_writing()
         self._end_stall()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """It is closed."""
+        """Stop the timers of the closed connection."""
         self._end_stall()
         super().connection_lost(exc)
 
@@ -66,12 +66,12 @@ class _Connection(asyncio.Protocol):
 
 
 class HttpConnection(_Connection, H11Protocol):
-    """Waits REQUEST_S for a request to be whole, headers and body."""
+    """With a timeout of REQUEST_S for a complete request, headers and body."""
 
     _deadline: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Somebody has connected."""
+        """A client has connected."""
         super().connection_made(transport)
         self.since_s = self.loop.time()
         self._expect()
@@ -91,16 +91,16 @@ class HttpConnection(_Connection, H11Protocol):
             self._expect()
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:
-        """From here on another protocol has the transport."""
+        """Pass the transport to the WebSocket protocol."""
         self._end_wait()
-        if self.flow.write_paused:  # of which the other would not be told
+        if self.flow.write_paused:  # the other protocol would not learn of it
             self.drop()
         else:
             super().handle_websocket_upgrade(event)
 
     def send_400_response(self, msg: str) -> None:
-        """What has come is no HTTP: perhaps the body of a request that is being answered. uvicorn would
-        say so in between, and that answer would then be an error of ours."""
+        """The data is no HTTP: perhaps the body of a request whose answer is under way. uvicorn would send its error
+        within that answer and break it."""
         cycle = cast(RequestResponseCycle | None, self.cycle)
         if cycle is not None and not cycle.response_complete:
             cycle.disconnected = True
@@ -111,7 +111,7 @@ class HttpConnection(_Connection, H11Protocol):
             self.transport.close()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """It is closed."""
+        """Stop the timers of the closed connection."""
         self._end_wait()
         super().connection_lost(exc)
 
@@ -129,27 +129,27 @@ class SocketConnection(_Connection, WebSocketsSansIOProtocol):
     """A WebSocket."""
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """It was a request until now."""
+        """Called after the upgrade of an HTTP request."""
         super().connection_made(transport)
         self.since_s = self.loop.time()
 
     def data_received(self, data: bytes) -> None:
-        """The first time, the whole request: HTTP permits some that WebSockets do not."""
+        """The first data is the whole request, which may be valid for HTTP but not for a WebSocket."""
         super().data_received(data)
         if not self.handshake_initiated:  # and uvicorn would wait for ever
             self.transport.write(b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n")
             self.transport.close()
 
     def handle_ping(self) -> None:
-        """Answered unless nobody reads, or the answers would pile up."""
+        """Answer, unless the client does not read: answers would accumulate."""
         if self.writable.is_set():
             super().handle_ping()
         else:
-            self.conn.data_to_send()  # forgets the answer
+            self.conn.data_to_send()  # discards the answer
 
 
 def make_room(connections: set[_Connection]) -> None:
-    """One has come: when there are too many, close the oldest that nobody uses, else the newest."""
-    there = [one for one in connections if not one.dropped]
-    if len(there) > MOST:
-        min(there, key=lambda one: (one.in_use, one.since_s)).drop()
+    """For a new connection: above the limit close the oldest unauthorised one, else the oldest."""
+    open_ones = [connection for connection in connections if not connection.dropped]
+    if len(open_ones) > MOST:
+        min(open_ones, key=lambda connection: (connection.in_use, connection.since_s)).drop()

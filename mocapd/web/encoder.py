@@ -1,8 +1,7 @@
-"""Pictures as JPEG, only when somebody asks, and once for everybody who asks for the same.
+"""Encodes pictures as JPEG on request, once for all requests for the same picture.
 
-A picture that a body is drawn over is the newest one that the tracker has a pose for, so that the two fit at any rate.
-
-What a camera delivers as JPEG is handed on as it is to whoever asks for its whole width."""
+For a picture with a body overlay it takes the newest frame with a pose, so that both match at any rate. A request for
+the full width gets the camera's own JPEG unchanged, if there is one."""
 
 import asyncio
 from collections.abc import Callable
@@ -22,16 +21,16 @@ from mocapd.web.links.socket_link import MOST_HZ
 
 NARROWEST_PX, WIDTH_STEP_PX = 64, 32
 JPEG_QUALITY = 75
-WAIT_S = 1.0  # how long a new frame is waited for [s]
-POSE_AGE_S = 2.0  # a tracker that takes longer does not hold up the pictures [s]
+WAIT_S = 1.0  # timeout for a new frame [s]
+POSE_AGE_S = 2.0  # a slower tracker does not delay the pictures [s]
 _LOOK_EVERY_S = 0.01
-_MOST_WIDTHS = 16  # of one camera that are kept
+_MOST_WIDTHS = 16  # cached sizes
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """One frame as JPEG. size_px: of the camera's whole frame, not of the JPEG; body: what was tracked in it, None where
-    nothing was, or nobody asked."""
+    """One frame as JPEG. size_px: of the camera's whole frame, not of the JPEG; body: the body tracked in it, None without
+    one or when not requested."""
 
     camera: str
     seq: int
@@ -49,7 +48,7 @@ class _Newest:
 
 
 class PictureEncoder:
-    """Used within one event loop; encodes in `executor`. `encoded` counts what it has encoded."""
+    """Used within one event loop; encodes in `executor`. `encoded` counts the encoded pictures."""
 
     def __init__(
         self,
@@ -64,11 +63,11 @@ class PictureEncoder:
     async def picture(
         self, camera: str, width_px: int, after_seq: int | None, with_body: bool = False
     ) -> Picture | None:
-        """The camera's newest frame, other than the one with `after_seq` that is known already; with_body: the newest
-        with a pose, unless that is older than POSE_AGE_S.
+        """The camera's newest frame whose number is not `after_seq`; with_body: the newest with a pose, unless that is
+        older than POSE_AGE_S.
 
-        At most `width_px` wide and never wider than the camera's; None when no such frame comes in
-        time. No camera and width is encoded more often than MOST_HZ.
+        At most `width_px` wide and never wider than the camera's; None on a timeout. No camera and width is encoded more
+        often than MOST_HZ.
         """
         width_px = max(NARROWEST_PX, -(-width_px // WIDTH_STEP_PX) * WIDTH_STEP_PX)
         newest = self._slot(camera, width_px, with_body)
@@ -78,13 +77,13 @@ class PictureEncoder:
             if before is not None and before.seq != after_seq and loop.time() < due_s:
                 return before
             await asyncio.sleep(due_s - loop.time())
-            found = await self._frame(camera, after_seq, with_body)
-            if found is None:
+            result = await self._frame(camera, after_seq, with_body)
+            if result is None:
                 return None
-            frame, body = found
+            frame, body = result
             if before is None or frame.seq != before.seq or frame.t_ns != before.t_ns:
                 newest.made_s = loop.time()
-                before = delivered(frame, width_px)
+                before = camera_jpeg(frame, width_px)
                 if before is None:
                     before = await loop.run_in_executor(self.executor, encode, frame, width_px)
                     self.encoded += 1
@@ -92,23 +91,22 @@ class PictureEncoder:
             return before
 
     def _slot(self, camera: str, width_px: int, with_body: bool) -> _Newest:
-        found = self._newest.pop((camera, width_px, with_body), None) or _Newest()
+        slot = self._newest.pop((camera, width_px, with_body), None) or _Newest()
         while len(self._newest) >= _MOST_WIDTHS:
-            del self._newest[next(iter(self._newest))]  # the one that was not asked for the longest
-        self._newest[camera, width_px, with_body] = found
-        return found
+            del self._newest[next(iter(self._newest))]  # the least recently used
+        self._newest[camera, width_px, with_body] = slot
+        return slot
 
     async def _frame(
         self, camera: str, after_seq: int | None, with_body: bool
     ) -> tuple[Frame, BodySample | None] | None:
-        """The first frame that is another, and what was tracked in it; looked for, not waited for: at MOST_HZ it is
-        there."""
+        """The next frame with another number, and the body tracked in it. Polls: at MOST_HZ the frame is usually there."""
         loop = asyncio.get_running_loop()
         until_s = loop.time() + WAIT_S
         while True:
             hub = self._hub()
             frame = hub.newest(camera) if hub is not None else None
-            posed = self._posed(frame) if with_body and frame is not None else None
+            posed = self._body_for(frame) if with_body and frame is not None else None
             frame = frame if posed is None else posed.frames.frames[camera]
             if frame is not None and frame.seq != after_seq:
                 return frame, posed
@@ -116,18 +114,18 @@ class PictureEncoder:
                 return None
             await asyncio.sleep(_LOOK_EVERY_S)
 
-    def _posed(self, newest: Frame) -> BodySample | None:
-        """The newest body, where it has a pose and was tracked in a frame of this camera not long before the newest."""
+    def _body_for(self, newest: Frame) -> BodySample | None:
+        """The newest body, if it has a pose and a recent frame of this camera."""
         body = self._body()
-        seen = None if body is None else body.frames.frames.get(newest.camera)
-        if body is None or body.body.joints_m is None or seen is None:
+        frame = None if body is None else body.frames.frames.get(newest.camera)
+        if body is None or body.body.joints_m is None or frame is None:
             return None
-        return body if newest.t_ns - seen.t_ns <= nanoseconds(POSE_AGE_S) else None
+        return body if newest.t_ns - frame.t_ns <= nanoseconds(POSE_AGE_S) else None
 
 
-def delivered(frame: Frame, width_px: int) -> Picture | None:
-    """A frame with the camera's own JPEG; None where that cannot be shown as it is: there is none, fewer
-    pixels are wanted, or it says something else of itself than what was decoded from it."""
+def camera_jpeg(frame: Frame, width_px: int) -> Picture | None:
+    """A frame with the camera's own JPEG; None where that is unusable: it is missing, too wide, or its header contradicts
+    the decoded size."""
     height, width = frame.pixels.shape[:2]
     if frame.encoded is None or width_px < width:
         return None
@@ -140,17 +138,17 @@ def delivered(frame: Frame, width_px: int) -> Picture | None:
 
 
 def encode(frame: Frame, width_px: int, quality: int = JPEG_QUALITY) -> Picture:
-    """A frame as JPEG, at most so wide."""
+    """A frame as JPEG, at most `width_px` wide."""
     height, width = frame.pixels.shape[:2]
     pixels = frame.pixels
     if width_px < width:
-        pixels = _scaled(pixels, width_px, max(1, round(height * width_px / width)))
+        pixels = _scale(pixels, width_px, max(1, round(height * width_px / width)))
     _, jpeg = cv2.imencode(".jpg", pixels, (cv2.IMWRITE_JPEG_QUALITY, quality))
     return Picture(frame.camera, frame.seq, frame.t_ns, (width, height), jpeg.tobytes())
 
 
-def _scaled(pixels: Bytes, width_px: int, height_px: int) -> Bytes:
-    """Areas by halves, which has a quick path, the rest linearly: 640 to 480 in 1 ms instead of 5."""
+def _scale(pixels: Bytes, width_px: int, height_px: int) -> Bytes:
+    """Halves by area averaging (OpenCV's fast path), the rest linearly: 640 to 480 in 1 ms instead of 5."""
     small: object = pixels
     height, width = pixels.shape[:2]
     while width >= 2 * width_px and height >= 2:

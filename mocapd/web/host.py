@@ -1,4 +1,4 @@
-"""What the page needs of the process that serves it: the daemon, or `mocapd calibrate` by itself."""
+"""The page's interface to the process that serves it: the daemon, or `mocapd calibrate` alone."""
 
 from typing import Protocol
 
@@ -12,29 +12,29 @@ from mocapd.wizard.wizard import Wizard
 
 
 class Host(Protocol):
-    """Asked by the web server's threads at any time; everything returns at once, but `setup`."""
+    """Called by the web server's threads at any time; everything but `setup` returns at once."""
 
     @property
     def hub(self) -> FrameHub | None:
-        """The cameras' pictures; None while they are being opened anew."""
+        """The cameras' pictures; None while they are being reopened."""
         ...
 
     @property
     def rig(self) -> Rig | None:
-        """The calibration that is tracked with; None without one."""
+        """The calibration in use; None without one."""
         ...
 
     def known(self) -> RecordedKnown:
-        """What is known of cameras and wearer, for a recording."""
+        """The set-up of cameras and wearer, for a recording."""
         ...
 
     @property
     def wizard(self) -> Wizard | None:
-        """The setup that is going on; None when there is none."""
+        """The current setup; None without one."""
         ...
 
     def setup(self) -> Wizard:
-        """The setup, begun when none is going on. Raises UnavailableError when it cannot be now."""
+        """The current setup, or a new one. Raises UnavailableError when none can begin now."""
         ...
 
     def body(self) -> BodySample | None:
@@ -43,13 +43,13 @@ class Host(Protocol):
 
     @property
     def recordings(self) -> Recordings | None:
-        """What the page records; None where nothing is tracked for long."""
+        """The page's recordings; None in a process that does not track continuously."""
         ...
 
     def recenter(self) -> None:
-        """What the person faces is forward from now on. Raises UnavailableError when nobody is seen."""
+        """Make the person's facing direction forward. Raises UnavailableError without a person in view."""
         ...
 
     def snapshot(self) -> Snapshot | None:
-        """How cameras, tracker and outputs fare; None when nothing tracks."""
+        """State of cameras, tracker and outputs; None when nothing tracks."""
         ...

@@ -1,4 +1,4 @@
-"""What the live view is told, as JSON: where things are, the body, and how everything fares."""
+"""JSON messages for the live view: scene, body and figures."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -12,14 +12,14 @@ from mocapd.service.health import effort_text, lost_reason_text, slowness_text
 from mocapd.service.service import Snapshot
 from mocapd.types import BodyState, Camera, Rig, Skeleton
 
-FRUSTUM_M = 0.35  # how long the cameras are drawn [m]
+FRUSTUM_M = 0.35  # length of a drawn camera frustum [m]
 
 
 def scene_json(
     names: tuple[str, ...], rig: Rig | None, skeleton: Skeleton | None
 ) -> dict[str, object]:
-    """What seldom changes. names: of the pictures; cameras: of the rig, with centre and the four
-    corners of what they see [m, world]; joints and parents: the skeleton's."""
+    """The slowly changing part. names: of the pictures; cameras: of the rig, with centre and the four corners of the
+    frustum [m, world]; joints and parents: the skeleton's."""
     return {
         "kind": "scene",
         "names": list(names),
@@ -56,7 +56,7 @@ def body_json(body: BodyState) -> dict[str, object]:
 
 
 def figures_json(snapshot: Snapshot | None) -> dict[str, object]:
-    """How everything fares; `figures` is null when nothing tracks."""
+    """State of cameras, tracker and outputs; `figures` is null when nothing tracks."""
     if snapshot is None:
         return {"kind": "figures", "figures": None}
     metrics = snapshot.metrics
@@ -89,6 +89,6 @@ def figures_json(snapshot: Snapshot | None) -> dict[str, object]:
             }
             for name, status in snapshot.cameras.items()
         ],
-        "outputs": [{"name": name, **asdict(one)} for name, one in snapshot.outputs.items()],
+        "outputs": [{"name": name, **asdict(status)} for name, status in snapshot.outputs.items()],
     }
     return {"kind": "figures", "figures": figures}

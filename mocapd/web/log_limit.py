@@ -1,18 +1,18 @@
-"""Logs that others can fill: libraries write a record for each trouble with each connection."""
+"""Rate limit for libraries' logs, which otherwise get a record for each faulty connection."""
 
 import logging
 import time
 
 PAUSE_S = 10.0  # between two records of one message [s]
-_MOST_MESSAGES = 100  # that are told apart
-# What uvicorn says of every WebSocket that is refused with an HTTP answer: a stranger's doing, and no trouble of ours.
+_MOST_MESSAGES = 100  # distinct ones
+# uvicorn logs this for every WebSocket that is refused with an HTTP answer: the client's error, not ours.
 _ORDINARY = frozenset({"ASGI callable returned without completing handshake."})
 
 
 class LogLimit(logging.Filter):
-    """Passes a message once in PAUSE_S, with how many of it were left out since; what is ordinary, never.
+    """Passes each message once in PAUSE_S, with the number of omitted ones; ordinary messages never.
 
-    Messages are told apart by the first line of their format: what follows names objects and addresses.
+    Messages are distinguished by the first line of their format: the rest has object names and addresses.
     """
 
     def __init__(self) -> None:
@@ -21,7 +21,7 @@ class LogLimit(logging.Filter):
         self._left_out: dict[str, int] = {}
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Whether to log it."""
+        """True if the record is to be logged."""
         message = str(record.msg).partition("\n")[0]
         if message in _ORDINARY:
             return False
@@ -42,5 +42,5 @@ def limit_logs() -> None:
     """Limit what asyncio and uvicorn log, once for the whole process."""
     for name in ("asyncio", "uvicorn.error"):
         logger = logging.getLogger(name)
-        if not any(isinstance(one, LogLimit) for one in logger.filters):
+        if not any(isinstance(log_filter, LogLimit) for log_filter in logger.filters):
             logger.addFilter(LogLimit())

@@ -1,8 +1,8 @@
-"""Who may have the figures of /metrics: a Prometheus that was given the key, and nobody else.
+"""Access control of /metrics: only for a Prometheus with the key.
 
-The page's token changes with each start, and a collector cannot follow it. So this one address has a key of its own, as
-`Authorization: Bearer KEY`; it opens nothing else. The figures say when somebody plays, and how many cameras there are: other
-users of this machine do not get them for nothing.
+The page's token changes with each start, which a collector cannot follow. So this address has a key of its own, as
+`Authorization: Bearer KEY`, which opens nothing else. The metrics show when a person plays and how many cameras there
+are: this is private from other users of this machine.
 """
 
 import secrets
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from starlette.requests import HTTPConnection
 
-from mocapd.web.kept_key import kept_key, new_key
+from mocapd.web.stored_key import new_key, stored_key
 
 PATH = "/metrics"
 FILE_NAME = "metrics.key"  # in the state directory
@@ -26,11 +26,11 @@ class MetricsAccess:
 
     @property
     def enabled(self) -> bool:
-        """Whether there is something at the address."""
+        """True if the metrics are served."""
         return bool(self.key)
 
     def lets_in(self, connection: HTTPConnection) -> bool:
-        """Whether this one has the key. Its Host and Origin are looked at besides."""
+        """True for a request with the key. The caller also checks Host and Origin."""
         if connection.scope["type"] != "http" or connection.scope["path"] != PATH or not self.key:
             return False
         scheme, _, given = connection.headers.get("authorization", "").partition(" ")
@@ -40,7 +40,7 @@ class MetricsAccess:
 
 
 def metrics_access(enabled: bool, state_dir: Path | None) -> MetricsAccess:
-    """With the key that is kept in `state_dir`; None: a new one, kept nowhere. Raises as `kept_key`."""
+    """Access with the key stored in `state_dir`; None: a temporary key. Raises as `stored_key`."""
     if not enabled:
         return MetricsAccess()
-    return MetricsAccess(new_key() if state_dir is None else kept_key(state_dir / FILE_NAME))
+    return MetricsAccess(new_key() if state_dir is None else stored_key(state_dir / FILE_NAME))

@@ -1,4 +1,4 @@
-"""How everything fares, in the text format of Prometheus."""
+"""The daemon's metrics in the text format of Prometheus."""
 
 from collections.abc import Iterable, Iterator
 from itertools import accumulate
@@ -28,7 +28,7 @@ Families = Iterator[
 
 
 def metrics_text(snapshot: Snapshot | None) -> bytes:
-    """Figures of now; None: nothing tracks, and the process alone is told of."""
+    """The current metrics; None: nothing tracks, and only the process's metrics are served."""
     registry = CollectorRegistry(auto_describe=False)
     registry.register(_Collected(() if snapshot is None else tuple(_families(snapshot))))
     ProcessCollector(registry=registry)
@@ -40,7 +40,7 @@ class _Collected(Collector):
         self._families = families
 
     def collect(self) -> Iterable[object]:  # type: ignore[override]
-        """As the registry asks."""
+        """Called by the registry."""
         return self._families
 
 

@@ -1,8 +1,8 @@
-"""What the page asks of its recordings over HTTP.
+"""HTTP routes of the page's recordings.
 
-GET recordings: RecordingList. POST recordings: a RecordingRequest; its answer is the list then, or an Answer that says why
-it cannot be (503). GET recordings/ID: the file; GET recordings/ID/FORMAT: exported. POST recenter: what the person faces is
-forward.
+GET recordings: RecordingList. POST recordings: a RecordingRequest, answered with the new list or an Answer with the
+error (503). GET recordings/ID: the file; GET recordings/ID/FORMAT: exported. POST recenter: make the person's facing
+direction forward.
 """
 
 from collections.abc import Callable
@@ -25,7 +25,7 @@ _MEDIA_TYPES = {"bvh": "text/plain", "csv": "text/csv", "trc": "text/plain"}
 
 
 class RecordingRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Start or stop one, or write name and notes of one."""
+    """Start or stop a recording, or set its name and notes."""
 
     verb: Literal["start", "stop", "note"]
     id: str = ""
@@ -34,7 +34,7 @@ class RecordingRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class RefusedRecording(msgspec.Struct, frozen=True):
-    """Why something cannot be done now."""
+    """The error of a refused request."""
 
     what: str
     where: str
@@ -53,7 +53,7 @@ class RecordingRoutes:
             Route("/recordings", self._list),
             Route("/recordings", self._do, methods=["POST"]),
             Route("/recordings/{id}", self._file),
-            Route("/recordings/{id}/{format}", self._exported),
+            Route("/recordings/{id}/{format}", self._export),
             Route("/recenter", self._recenter, methods=["POST"]),
         ]
 
@@ -91,7 +91,7 @@ class RecordingRoutes:
 
         return await _answer(read)
 
-    async def _exported(self, request: Request) -> Response:
+    async def _export(self, request: Request) -> Response:
         id_, format_ = request.path_params["id"], request.path_params["format"]
 
         def export() -> Response:

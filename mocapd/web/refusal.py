@@ -1,4 +1,4 @@
-"""What somebody is told who is not let in."""
+"""The answer to a refused request."""
 
 from dataclasses import dataclass
 from html import escape
@@ -6,7 +6,7 @@ from html import escape
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """status: of HTTP; what: for people."""
+    """status: of HTTP; what: the reason, for display."""
 
     status: int
     what: str

@@ -1,16 +1,16 @@
-"""The body of a request, bounded."""
+"""Reads the body of a request up to a limit."""
 
 from starlette.requests import Request
 
-LONGEST_BODY = 64 << 10  # of anything that we are asked for [bytes]
+LONGEST_BODY = 64 << 10  # of any valid request [bytes]
 
 
 class BodyTooLongError(Exception):
-    """A body is longer than anything we are asked for."""
+    """A body is longer than LONGEST_BODY."""
 
 
 async def read_body(request: Request) -> bytes:
-    """Raises BodyTooLongError as soon as it is known, and ClientDisconnect."""
+    """The body. Raises BodyTooLongError at the limit, and ClientDisconnect."""
     body = bytearray()
     async for part in request.stream():
         body += part

@@ -1,8 +1,8 @@
-"""Where a running process says where its page is, so that `mocapd calibrate` finds it.
+"""Announces a process's page in the runtime directory, so that `mocapd calibrate` finds it.
 
-A webcam opens only once: whoever wants its pictures must ask the process that has it. Each process has
-files of its own in the runtime directory, named by its id; they are believed only while that process
-lives, is ours, and listens on that port: after a kill, anybody's server may have it.
+A webcam opens only once, so another program must get its pictures from the process that has it. Each process has its
+own files in the runtime directory, named by its pid. They are valid only while that process lives, belongs to our user
+and listens on that port: after a kill, another user's server may have the port.
 """
 
 import os
@@ -31,16 +31,16 @@ from mocapd.whole_file import whole_file
 ADDRESS = "127.0.0.1"
 SCHEMA = 1  # of page-PID.json
 SETUP = "#setup"  # the part of the page
-ANSWER_S = 2.0  # how long a living daemon may take to answer [s]
-BEGIN_S = 30.0  # and to begin a setup: cameras may have to be let go first [s]
+ANSWER_S = 2.0  # timeout of a daemon's answer [s]
+BEGIN_S = 30.0  # timeout of a setup's start, which may have to release cameras first [s]
 _LONGEST_FILE = 64 << 10  # [bytes]
 _LONGEST_ANSWER = 1 << 20  # [bytes]
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a page is announced. folder: see `config.runtime_folder`; state_dir, instance: by which it is
-    told from other pages of this user; findable: whether others may attach to it."""
+    """Where a page is announced. folder: see `config.runtime_folder`; state_dir, instance: distinguish the pages of one
+    user; findable: whether other programs may attach to it."""
 
     folder: Path
     state_dir: Path
@@ -49,7 +49,7 @@ class Place:
 
 
 class _Said(msgspec.Struct, frozen=True):
-    """What page-PID.json says; one of a newer mocapd may mean something else by it."""
+    """The content of page-PID.json; a newer schema may have another meaning."""
 
     port: Annotated[int, Meta(ge=1, le=65535)]
     token: Annotated[str, Meta(pattern=r"^[A-Za-z0-9_-]{1,200}$")]
@@ -61,8 +61,8 @@ class _Said(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """A page that answers. url: with its token; status: what it says of itself; redirect: a file of
-    our user that leads a browser there."""
+    """A page that answers. url: with its token; status: its answer; redirect: a file of our user that redirects a browser
+    to it."""
 
     url: str
     status: Status
@@ -73,20 +73,17 @@ class Running:
 
 
 def url_of(port: int, token: str) -> str:
-    """Of the page, with its token."""
+    """The page's URL with its token."""
     return f"http://{ADDRESS}:{port}/?{TOKEN}={token}"
 
 
 def redirect_file(folder: Path, pid: int) -> Path:
-    """Leads a browser to the page of that process: a token in a command line is read by every user."""
+    """The file that redirects a browser to that process's page: every user can read a token in a command line."""
     return folder / f"page-{pid}.html"
 
 
 def announce(place: Place, port: int, token: str) -> None:
-    """Say where our page is; only our user may read it, as it holds the token.
-
-    Raises CannotCreateError.
-    """
+    """Announce our page in files for our user only, because they hold the token. Raises CannotCreateError."""
     redirect = redirect_file(place.folder, os.getpid())
     try:
         place.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -104,15 +101,15 @@ def announce(place: Place, port: int, token: str) -> None:
 
 
 def withdraw(folder: Path) -> None:
-    """Our page is gone."""
+    """Remove the files of our page."""
     _remove(redirect_file(folder, os.getpid()))
 
 
 def running(folder: Path) -> tuple[Running, ...]:
-    """The pages that are announced there and answer, by process id; of others the files are removed."""
-    found = []
+    """The announced pages that answer, by process id; removes files of ended processes."""
+    pages = []
     for path in folder.glob("page-*.json"):
-        said = _believed(path)
+        said = _valid_announcement(path)
         if said is None:
             _remove(path)
             continue
@@ -124,17 +121,17 @@ def running(folder: Path) -> tuple[Running, ...]:
         except (OSError, MalformedError):
             continue  # it is ending, or too busy
         redirect = path.with_suffix(".html")
-        found.append(Running(url, status, said.pid, said.state_dir, said.instance, redirect))
-    return tuple(sorted(found, key=lambda page: page.pid))
+        pages.append(Running(url, status, said.pid, said.state_dir, said.instance, redirect))
+    return tuple(sorted(pages, key=lambda page: page.pid))
 
 
 def begin_setup(url: str, step: str | None) -> None:
-    """Have that page begin a setup, or show `step` of the one it has. Raises UnavailableError."""
-    _asked(url, "/setup", BEGIN_S, msgspec.json.encode(SetupRequest(step)))
+    """Start a setup on that page, or show `step` of its current one. Raises UnavailableError."""
+    _post(url, "/setup", BEGIN_S, msgspec.json.encode(SetupRequest(step)))
 
 
-def _asked(url: str, path: str, timeout_s: float, body: bytes) -> bytes:
-    """What it answers to a POST. Raises UnavailableError, with its own words when it refuses."""
+def _post(url: str, path: str, timeout_s: float, body: bytes) -> bytes:
+    """The answer to a POST. Raises UnavailableError, with the page's reason for a refusal."""
     try:
         return _answer(url, path, timeout_s, body)
     except urllib.error.HTTPError as refused:
@@ -145,14 +142,14 @@ def _asked(url: str, path: str, timeout_s: float, body: bytes) -> bytes:
         raise UnavailableError(why.what, why.where, why.fix) from refused
     except OSError as error:
         raise UnavailableError(
-            f"no answer: {error}", "the running daemon", "start it anew, or end it"
+            f"no answer: {error}", "the running daemon", "restart it, or end it"
         ) from error
 
 
 def _answer(url: str, path: str, timeout_s: float, body: bytes | None = None) -> bytes:
-    """Raises OSError, of which urllib's errors are."""
+    """Raises OSError; urllib's errors are subclasses."""
     there = urlunsplit(urlsplit(url)._replace(path=path, fragment=""))
-    # a proxy for the rest of the world is none for this machine
+    # without the user's proxy, which is for other hosts
     opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
     try:
         with opener.open(there, body, timeout=timeout_s) as answer:
@@ -161,11 +158,11 @@ def _answer(url: str, path: str, timeout_s: float, body: bytes | None = None) ->
         raise ConnectionError(f"{type(error).__name__}: {error}") from error
 
 
-def _believed(path: Path) -> _Said | None:
-    """What a living process of ours says there; None for anything else."""
+def _valid_announcement(path: Path) -> _Said | None:
+    """The content of a file of our live process; None for any other file."""
     try:
         said = decode_json(read_file(path, _LONGEST_FILE), _Said)
-    except InputError:  # of which MalformedError is one
+    except InputError:  # also a MalformedError
         return None
     own_name = path.name == redirect_file(path.parent, said.pid).with_suffix(".json").name
     return said if own_name and listens(said.pid, ADDRESS, said.port) else None
@@ -177,7 +174,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _remove(path: Path) -> None:
-    """Both files of a process; what cannot be removed does no harm."""
+    """Remove both files of a process; errors are ignored, because stale files do no harm."""
     for suffix in (".json", ".html"):
         with suppress(OSError):
             path.with_suffix(suffix).unlink()

@@ -39,14 +39,14 @@ from mocapd.web.runtime_file import ADDRESS, Place, announce, redirect_file, url
 
 _log = logging.getLogger(__name__)
 
-STOP_S = 1.4  # what ending may take: uvicorn looks every 0.1 s, and gives its sockets 1 s [s]
+STOP_S = 1.4  # timeout of `stop`: uvicorn polls every 0.1 s, and gives its sockets 1 s [s]
 
 
 class WebServer:
     """Serves the page from `start` to `stop`, or as a context manager.
 
-    `died` is called, in the server's thread, with whatever unexpected happened there. `place`: where
-    the URL is said (see runtime_file), if it shall be. `encoder` counts its work.
+    `died` is called in the server's thread with an unexpected exception. `place`: where to announce the
+    URL (see runtime_file), or None. `encoder` counts its pictures.
     """
 
     def __init__(
@@ -79,16 +79,16 @@ class WebServer:
 
     @property
     def url(self) -> str:
-        """Where the page is, with the token of this start; valid once started."""
+        """The page's URL with the token of this start; valid once started."""
         return url_of(self._port, self._token)
 
     @property
     def redirect(self) -> Path | None:
-        """A file that leads a browser of our user to the page; None when nothing is announced."""
+        """A file that redirects our user's browser to the page; None without an announcement."""
         return None if self._place is None else redirect_file(self._place.folder, os.getpid())
 
     def start(self) -> None:
-        """Returns as soon as the page can be asked for.
+        """Start; returns as soon as the page answers.
 
         Raises UnavailableError for a taken port, CannotCreateError when the URL cannot be announced, and as
         `frames_access` and `metrics_access`.
@@ -96,7 +96,7 @@ class WebServer:
         state_dir = None if self._place is None else self._place.state_dir
         frames = frames_access(self._origins, state_dir)
         metrics = metrics_access(self._with_metrics, state_dir)
-        listening = _listen(self._port)
+        listening = _open_listener(self._port)
         self._port = listening.getsockname()[1]
         limit_logs()
         routes = make_app(self._host, self.encoder, frames, metrics.enabled)
@@ -115,7 +115,7 @@ class WebServer:
             backlog=ACCEPTED_AT_ONCE,
             h11_max_incomplete_event_size=LONGEST_HEAD,
             ws_max_size=LONGEST_MESSAGE,
-            ws_ping_interval=None,  # on one machine the system tells when a browser has gone
+            ws_ping_interval=None,  # on one machine the system closes the socket of a browser that has gone
             ws_per_message_deflate=False,  # JPEG does not get any smaller
             timeout_graceful_shutdown=1,
         )
@@ -138,14 +138,14 @@ class WebServer:
         self._thread.start()
 
     def let_go(self) -> None:
-        """First pass of stopping: the page is no longer announced, and open ones end; never blocks."""
+        """First phase of stopping: withdraw the announcement, accept no new page, notify the open ones; never blocks."""
         if self._place is not None:
             withdraw(self._place.folder)
         if self._server is not None:
             self._server.should_exit = True
 
     def stop(self, timeout_s: float = STOP_S) -> bool:
-        """Let go and join; False when something still blocks the thread after `timeout_s` [s]."""
+        """End and join; False when the thread is still blocked after `timeout_s` [s]."""
         self.let_go()
         if self._thread is None:
             return True
@@ -155,7 +155,7 @@ class WebServer:
 
     def _run(self, server: uvicorn.Server, listening: socket.socket) -> None:
         try:
-            # in this thread uvicorn leaves the signals alone
+            # in this thread uvicorn installs no signal handlers
             server.run(sockets=[listening])
         except BaseException as error:
             self._died(error)
@@ -163,16 +163,16 @@ class WebServer:
 
 
 class _Server(uvicorn.Server):
-    """With a queue that is longer than what is taken from it at once."""
+    """With a backlog longer than the number of connections accepted at once."""
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
-        for one in sockets or ():
-            one.listen(QUEUE)
+        for listening in sockets or ():
+            listening.listen(QUEUE)
 
 
 class _Deadly:
-    """ASGI middleware: uvicorn would log what nobody expected, and go on."""
+    """ASGI middleware that reports unexpected errors to `died`: uvicorn would log them and continue."""
 
     def __init__(self, app: ASGIApp, died: Callable[[BaseException], None]) -> None:
         self._app, self._died = app, died
@@ -187,7 +187,7 @@ class _Deadly:
             raise
 
 
-def _listen(port: int) -> socket.socket:
+def _open_listener(port: int) -> socket.socket:
     listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -1,4 +1,4 @@
-"""JSON that leaves the process: numbers as the steps compute them, addresses without their passwords."""
+"""Encodes JSON for the page: numpy numbers, and addresses without their passwords."""
 
 from typing import Any
 
@@ -11,12 +11,12 @@ from mocapd.boundary.urls import without_passwords
 def as_json(message: object) -> bytes:
     """JSON; NaN becomes null. Numbers may be numpy's: steps and metrics compute with them.
 
-    A camera's address may be in any of its texts, as a name, a source or the words of an error.
+    Any of its texts may hold a camera's address: a name, a source or an error message.
     """
     encoded = msgspec.json.encode(message, enc_hook=_plain)
     if b"://" not in encoded:
         return encoded
-    return msgspec.json.encode(_masked(msgspec.json.decode(encoded)))
+    return msgspec.json.encode(_mask_passwords(msgspec.json.decode(encoded)))
 
 
 def _plain(value: object) -> object:
@@ -25,11 +25,11 @@ def _plain(value: object) -> object:
     raise TypeError(f"a {type(value).__name__} is no JSON")
 
 
-def _masked(tree: Any) -> Any:
+def _mask_passwords(tree: Any) -> Any:
     if isinstance(tree, str):
         return without_passwords(tree)
     if isinstance(tree, list):
-        return [_masked(one) for one in tree]
+        return [_mask_passwords(item) for item in tree]
     if isinstance(tree, dict):
-        return {without_passwords(name): _masked(one) for name, one in tree.items()}
+        return {without_passwords(name): _mask_passwords(item) for name, item in tree.items()}
     return tree

@@ -1,4 +1,4 @@
-"""What other processes ask of a running page: is it alive, begin a setup."""
+"""Messages between a running page and other processes: status, and the start of a setup."""
 
 from typing import Annotated
 
@@ -7,9 +7,8 @@ from msgspec import Meta
 
 
 class Status(msgspec.Struct, frozen=True):
-    """GET /status. setup: the step that is shown; None without a setup. tracks: whether bodies come;
-    origins,
-    frames_key: see FramesAccess."""
+    """GET /status. setup: the current step; None without a setup. tracks: whether a tracker runs;
+    origins, frames_key: see FramesAccess."""
 
     version: str
     pid: int
@@ -21,13 +20,13 @@ class Status(msgspec.Struct, frozen=True):
 
 
 class SetupRequest(msgspec.Struct, frozen=True):
-    """POST /setup: begin one, or go on with the one there is; `step`: shown at once."""
+    """POST /setup: start a setup, or continue the current one; `step`: the step to show."""
 
     step: Annotated[str, Meta(max_length=100)] | None = None
 
 
 class SetupAnswer(msgspec.Struct, frozen=True):
-    """Its answer: empty when the setup is going on, else (503) why it cannot be now."""
+    """Its answer: empty on success, else (503) the error."""
 
     what: str = ""
     where: str = ""

@@ -1,4 +1,4 @@
-"""Somebody who looks at the live view, without a browser: to measure what looking costs."""
+"""A client of the live view without a browser, to measure the cost of watching."""
 
 import json
 import threading
@@ -15,18 +15,18 @@ from mocapd.errors import UnavailableError
 from mocapd.web.links.picture_link import DEFAULT_WIDTH_PX
 from mocapd.web.runtime_file import Running, running
 
-ANNOUNCED_S = 20.0  # how long the daemon may take to say where its page is [s]
+ANNOUNCED_S = 20.0  # timeout of the daemon's page announcement [s]
 
 
 class Watcher:
-    """`pictures` and `messages` count what came: JPEGs of all cameras, and live data."""
+    """`pictures` and `messages` count the received JPEGs of all cameras and live data."""
 
     def __init__(self) -> None:
         self.pictures = 0
         self.messages = 0
 
     def pull_pictures(self, socket: ClientConnection, cameras: tuple[str, ...]) -> None:
-        """Ask for every camera's next picture as soon as the last has come, until it closes."""
+        """Request every camera's next picture on arrival of the last, until it closes."""
         with suppress(ConnectionClosed):
             for camera in cameras:
                 socket.send(_request(camera, None))
@@ -37,7 +37,7 @@ class Watcher:
                 socket.send(_request(header["camera"], header["seq"]))
 
     def take_messages(self, socket: ClientConnection) -> None:
-        """Live data, until it closes."""
+        """Read live data until it closes."""
         with suppress(ConnectionClosed):
             for _ in socket:
                 self.messages += 1
@@ -45,7 +45,7 @@ class Watcher:
 
 @contextmanager
 def watching(runtime_dir: Path) -> Iterator[Watcher]:
-    """Look at everything that the page announced under `runtime_dir` shows, in threads.
+    """Watch all views of the page announced under `runtime_dir`, in threads.
 
     `runtime_dir` is the daemon's $XDG_RUNTIME_DIR. Raises UnavailableError when there is no page.
     """
@@ -78,7 +78,7 @@ def _page(folder: Path) -> Running:
 
 
 def socket_address(url: str, path: str) -> str:
-    """Of a WebSocket of the page at this URL, with its token."""
+    """The address of a WebSocket of the page at this URL, with its token."""
     return urlsplit(url)._replace(scheme="ws", path=path).geturl()
 
 

@@ -30,8 +30,8 @@ PATIENCE_S = 30.0
 def recorded(running: Running, path: Path) -> list[object]:
     """What the file holds after some frames were sent while it was made."""
     sent = frames(0.4)
-    running.sink.tell(rest())
-    running.sink.tell(cameras())
+    running.sink.send_state(rest())
+    running.sink.send_state(cameras())
     with (
         PublishedStream(Link(running.endpoint)) as stream,
         RecordingWriter(path, RecordingParams(), 0) as writer,
@@ -85,7 +85,7 @@ def test_nobody_there_is_named(tmp_path: Path) -> None:
 def test_ctrl_c_ends_it_in_order(tmp_path: Path, clean_env: dict[str, str]) -> None:
     path = tmp_path / "a.mcap"
     with running_sink() as running:
-        running.sink.tell(rest())
+        running.sink.send_state(rest())
         recorder = start(clean_env, "record", path, "--endpoint", running.endpoint)
         try:
             running.heard()

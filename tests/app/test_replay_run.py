@@ -37,7 +37,7 @@ class Listening:
         if len(self.frames) == self.enough and self.replay is not None:
             self.replay.end()
 
-    def tell(self, message: StateMessage) -> None:
+    def send_state(self, message: StateMessage) -> None:
         self.states.append(message)
 
     def status(self) -> SinkStatus:

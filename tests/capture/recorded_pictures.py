@@ -41,5 +41,5 @@ def recorded_capture(
                     jpeg = jpeg[:60]
                 writer.picture(name, frame.seq, START_NS + frame.t_ns, jpeg)
                 if frame.seq % 4 == 3:
-                    writer.beat(START_NS + 10**9 * frame.seq)
+                    writer.flush_if_due(START_NS + 10**9 * frame.seq)
     return path

@@ -156,7 +156,7 @@ def test_what_is_wrong_with_a_message_is_said_and_survived(name: str) -> None:
 
 def test_what_is_wrong_with_a_datagram_is_said_and_survived() -> None:
     frame = whole_frame(seq=7)
-    hand = next(bytes(one) for one in FrameBundles(frame).filled(frame) if b"leftHand\0" in one)
+    hand = next(bytes(one) for one in FrameBundles(frame).fill(frame) if b"leftHand\0" in one)
     tags = b",fffffffffffff\0\0"
     x_at = hand.index(tags, hand.index(b"leftHand\0")) + len(tags)
     not_a_number = hand[:x_at] + struct.pack(">f", NAN) + hand[x_at + 4 :]

@@ -99,7 +99,7 @@ def test_a_skeleton_that_no_format_holds_is_refused(
     path, (frame, *_) = tmp_path / "a.mcap", frames(0.1)
     joints = dict(zip(skeleton.names, frame.joints.values(), strict=True))
     with RecordingWriter(path, RecordingParams(), frame.capture_unix_ns) as writer:
-        writer.tell(skeleton, frame.capture_unix_ns)
+        writer.add_state(skeleton, frame.capture_unix_ns)
         writer.frame(msgspec.structs.replace(frame, joints=joints))
     with pytest.raises(InputError, match="skeleton is none of mocapd"):
         motion_of(RecordingReader(path), 0, None)

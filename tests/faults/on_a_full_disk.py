@@ -71,15 +71,15 @@ def recorded(folder: Path) -> dict[str, object]:
     path = folder / "a.mcap"
     first = frame_at(0.0, 0)
     writer = RecordingWriter(path, RecordingParams(exact=True), first.capture_monotonic_ns)
-    writer.tell(cameras(), first.capture_unix_ns)
-    writer.tell(rest(), first.capture_unix_ns)
+    writer.add_state(cameras(), first.capture_unix_ns)
+    writer.add_state(rest(), first.capture_unix_ns)
     said, handed_over = "", 0
     filler = folder / "filler"
     for number in count():
         frame = frame_at(number / HZ, number)
         try:
             writer.frame(frame)
-            writer.beat(frame.capture_monotonic_ns)
+            writer.flush_if_due(frame.capture_monotonic_ns)
         except CannotCreateError as error:
             said = str(error)
             break

@@ -7,7 +7,7 @@ from random import Random
 
 import numpy as np
 
-from mocapd.outputs.vmc.placing import local_rotations, placed, placing
+from mocapd.outputs.vmc.vmc_space import local_rotations, vmc_heading, vmc_poses
 from mocapd.outputs.vmc.vrm_file import read_vrm
 from tests.fuzz.mutations import JSON_VALUES, damaged, mistyped
 from tests.fuzz.row import Attempt, Place, WrongError
@@ -46,9 +46,9 @@ def vrms(place: Place) -> Attempt:
             whole = damaged(random, whole)
         path.write_bytes(whole)
         avatar = read_vrm(path)
-        where = placing(0.0, 0.0, by_root=False)
+        where = vmc_heading(0.0, 0.0, by_root=False)
         upright = local_rotations(avatar, where, [(0.0, 0.0, 0.0, 1.0)] * len(avatar.names))
-        pose = placed(avatar, where, (0.3, 1.0, 0.2), upright, avatar.hips_height_m)
+        pose = vmc_poses(avatar, where, (0.3, 1.0, 0.2), upright, avatar.hips_height_m)
         if not np.abs(pose).max() < _MOST:
             raise WrongError("an avatar is taken whose pose is no number")
         return True

@@ -52,7 +52,7 @@ class _Checked:
         if not (0 <= frame.person < 2**31 and math.isfinite(float(frame.capture_unix_ns))):
             raise WrongError("a person or a time that no output can tell is sent on")
 
-    def tell(self, message: StateMessage) -> None:
+    def send_state(self, message: StateMessage) -> None:
         """Checked by who encodes it."""
         msgspec.msgpack.encode(message)
 

@@ -38,7 +38,7 @@ FRAMES = {"whole": whole, "lost": lost}
 
 def datagrams(frame: SkeletonFrame) -> list[bytes]:
     """As they are sent."""
-    return [bytes(one) for one in FrameBundles(frame).filled(frame)]
+    return [bytes(one) for one in FrameBundles(frame).fill(frame)]
 
 
 def kept(name: str) -> list[bytes]:

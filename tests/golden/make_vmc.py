@@ -8,9 +8,9 @@ import json
 from pathlib import Path
 from typing import get_args
 
-from mocapd.outputs.vmc.placing import placing
 from mocapd.outputs.vmc.vmc_encoder import VmcEncoder
 from mocapd.outputs.vmc.vmc_packets import Bundling
+from mocapd.outputs.vmc.vmc_space import vmc_heading
 from tests.golden import stepping_left
 
 FOLDER = Path(__file__).parent / "vmc"
@@ -20,7 +20,7 @@ CALIBRATION, TIME_S = 3, 12.5
 
 def packets(bundling: Bundling) -> list[bytes]:
     """The datagrams of the pose."""
-    encoder = VmcEncoder(placing(0.0, 0.0, by_root=False), False, bundling, None)
+    encoder = VmcEncoder(vmc_heading(0.0, 0.0, by_root=False), False, bundling, None)
     datagrams = encoder.encode(
         stepping_left.frame(), stepping_left.rest(), calibration=CALIBRATION, time_s=TIME_S
     )

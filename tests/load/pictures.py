@@ -42,5 +42,5 @@ def write_recording(
             t_ns = _START_NS + round(n / rate_hz * NS_PER_S)
             writer.picture(CAMERA, n, t_ns, files[n % len(files)])
             if n % 16 == 15:
-                writer.beat(t_ns)
+                writer.flush_if_due(t_ns)
     return path

@@ -13,7 +13,7 @@ from mocapd.calibrate.extrinsics.rig_writing import write_rig
 from mocapd.service.room_memory import RoomMemory
 from mocapd.session.offline import RecordedTrack, write_track
 from mocapd.types import Bytes
-from mocapd.web.kept_key import kept_key
+from mocapd.web.stored_key import stored_key
 from mocapd.wizard.draft_file import FILE_NAME, UnfinishedSetup, write_draft
 from mocapd.wizard.intrinsics.saved_intrinsics import store_intrinsics
 from mocapd.wizard.saving import save_draft
@@ -36,7 +36,7 @@ def make_exhibit(folder: Path) -> None:
     done = frozenset({StepName.CAMERAS, StepName.LENS})
     write_draft(state / FILE_NAME, UnfinishedSetup(WHEN, done, draft))
     for name in ("frames.key", "metrics.key"):
-        kept_key(state / name)
+        stored_key(state / name)
     assert draft.rig is not None
     seen = {one.name: [find_landmarks(patches(), one)] for one in draft.rig.cameras}
     RoomMemory(state).write({one.name: one for one in draft.rig.cameras}, seen)

@@ -23,7 +23,7 @@ from mocapd.outputs.wire import SkeletonFrame
 from mocapd.service.room_memory import DIGEST_BYTES, RoomMemory, digest_of, kept_rooms
 from mocapd.service.room_memory import FILE_NAME as ROOMS
 from mocapd.types import Camera
-from mocapd.web.kept_key import kept_key
+from mocapd.web.stored_key import stored_key
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft_file import FILE_NAME as DRAFT
 from mocapd.wizard.draft_file import OF_EARLIER_VERSIONS, read_draft
@@ -164,7 +164,7 @@ def test_a_track_of_any_version_has_what_its_readers_ask_for(exhibit: Path) -> N
 @pytest.mark.parametrize("name", ["frames.key", "metrics.key"])
 def test_keys_stay_those_that_were_given_away(state: Path, name: str) -> None:
     before = (state / name).read_bytes()
-    assert kept_key(state / name) == before.decode().strip()
+    assert stored_key(state / name) == before.decode().strip()
     assert (state / name).read_bytes() == before
 
 
@@ -249,7 +249,7 @@ def changed(path: Path, change: Change) -> bytes:
         (f"state/{DRAFT}", read_draft),
         (f"state/{ROOMS}", lambda path: kept_rooms(path, {})),
         ("rig.json", load_rig),
-        ("state/frames.key", kept_key),
+        ("state/frames.key", stored_key),
     ],
 )
 def test_a_damaged_file_is_refused_by_name_and_left_as_it_is(

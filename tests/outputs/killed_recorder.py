@@ -19,13 +19,13 @@ def main() -> None:
     with RecordingWriter(
         Path(sys.argv[1]), RecordingParams(), first.capture_monotonic_ns
     ) as writer:
-        writer.tell(cameras(), first.capture_unix_ns)
-        writer.tell(rest(), first.capture_unix_ns)
+        writer.add_state(cameras(), first.capture_unix_ns)
+        writer.add_state(rest(), first.capture_unix_ns)
         for number in count():
             frame = frame_at(number / HZ, number)
             writer.frame(frame)
             print(number, flush=True)
-            writer.beat(frame.capture_monotonic_ns)
+            writer.flush_if_due(frame.capture_monotonic_ns)
 
 
 if __name__ == "__main__":

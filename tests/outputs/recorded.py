@@ -82,11 +82,11 @@ def record(path: Path, recorded: list[SkeletonFrame], **params: object) -> Path:
     """A recording of these frames, closed in order; a beat at each of them."""
     now_ns = recorded[0].capture_unix_ns if recorded else UNIX_OFFSET_NS
     with RecordingWriter(path, RecordingParams(**params), now_ns) as writer:  # type: ignore[arg-type]
-        writer.tell(cameras(), now_ns)
-        writer.tell(rest(), now_ns)
+        writer.add_state(cameras(), now_ns)
+        writer.add_state(rest(), now_ns)
         for frame in recorded:
             writer.frame(frame)
-            writer.beat(frame.capture_unix_ns)
+            writer.flush_if_due(frame.capture_unix_ns)
     return path
 
 

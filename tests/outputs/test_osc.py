@@ -71,19 +71,19 @@ def decoded(datagram: bytes | bytearray) -> list[OscMessage]:
 
 def test_a_frame_is_these_bytes() -> None:
     frame = small_frame()
-    assert [bytes(d) for d in FrameBundles(frame).filled(frame)] == [GOLDEN_BUNDLE]
+    assert [bytes(d) for d in FrameBundles(frame).fill(frame)] == [GOLDEN_BUNDLE]
 
 
 def test_a_layout_made_from_another_frame_of_the_shape_gives_the_same_bytes() -> None:
     joints = {name: Joint((9.0,) * 3, (9.0,) * 4, (9.0,) * 4, 9.0) for name in small_frame().joints}
     layout = FrameBundles(small_frame(seq=99, person=5, joints=joints))
-    layout.filled(small_frame(seq=99, joints=joints))
-    assert [bytes(d) for d in layout.filled(small_frame())] == [GOLDEN_BUNDLE]
+    layout.fill(small_frame(seq=99, joints=joints))
+    assert [bytes(d) for d in layout.fill(small_frame())] == [GOLDEN_BUNDLE]
 
 
 def test_an_independent_decoder_reads_the_whole_body() -> None:
     frame = whole_frame(seq=2**31 + 5)
-    datagrams = FrameBundles(frame).filled(frame)
+    datagrams = FrameBundles(frame).fill(frame)
     seen: dict[str, list[float]] = {}
     for part, datagram in enumerate(datagrams):
         assert len(datagram) <= osc.MAX_DATAGRAM_BYTES
@@ -103,7 +103,7 @@ def test_an_independent_decoder_reads_the_whole_body() -> None:
 
 def test_the_body_takes_two_datagrams_of_about_the_same_size() -> None:
     frame = whole_frame()
-    sizes = [len(d) for d in FrameBundles(frame).filled(frame)]
+    sizes = [len(d) for d in FrameBundles(frame).fill(frame)]
     assert len(sizes) == 2
     assert max(sizes) - min(sizes) < 120
 
@@ -111,7 +111,7 @@ def test_the_body_takes_two_datagrams_of_about_the_same_size() -> None:
 @given(st.integers(260, 2600))
 def test_any_limit_is_kept_and_no_joint_lost(limit_bytes: int) -> None:
     frame = whole_frame()
-    datagrams = FrameBundles(frame, limit_bytes).filled(frame)
+    datagrams = FrameBundles(frame, limit_bytes).fill(frame)
     assert all(len(datagram) <= limit_bytes for datagram in datagrams)
     names = [m.address.rpartition("/")[2] for d in datagrams for m in decoded(d)[1:]]
     assert names == list(frame.joints)
@@ -119,7 +119,7 @@ def test_any_limit_is_kept_and_no_joint_lost(limit_bytes: int) -> None:
 
 def test_lost_is_one_short_datagram() -> None:
     frame = small_frame(tracking="lost", joints={}, cameras=())
-    (datagram,) = FrameBundles(frame).filled(frame)
+    (datagram,) = FrameBundles(frame).fill(frame)
     (head,) = decoded(datagram)
     assert head.params[3:5] == [1, 0]
     assert head.params[8] == "lost"
@@ -129,7 +129,7 @@ def test_many_long_camera_names_still_fit() -> None:
     frame = whole_frame()
     cameras = tuple(f"camera-over-the-garage-door-{i}" for i in range(100))
     many = small_frame(joints=frame.joints, cameras=cameras)
-    assert all(len(d) <= osc.MAX_DATAGRAM_BYTES for d in FrameBundles(many).filled(many))
+    assert all(len(d) <= osc.MAX_DATAGRAM_BYTES for d in FrameBundles(many).fill(many))
 
 
 @given(ANY_TEXT, ANY_TEXT, ANY_TEXT, st.lists(ANY_TEXT), st.lists(ANY_TEXT, unique=True))
@@ -147,7 +147,7 @@ def test_whatever_a_frame_says_it_fits_its_datagrams(
         cameras=tuple(cameras),
         joints=dict.fromkeys(joints, joint),
     )
-    datagrams = FrameBundles(frame).filled(frame)
+    datagrams = FrameBundles(frame).fill(frame)
     assert all(len(datagram) <= osc.MAX_DATAGRAM_BYTES for datagram in datagrams)
     messages = [decoded(datagram) for datagram in datagrams]
     assert sum(len(each) - 1 for each in messages) == len(joints)
@@ -166,7 +166,7 @@ def test_whatever_a_frame_says_it_fits_its_datagrams(
     ],
 )
 def test_texts_are_shortened_between_characters(text: str, max_bytes: int, expected: str) -> None:
-    assert osc.shortened(text, max_bytes) == expected
+    assert osc.truncate_utf8(text, max_bytes) == expected
 
 
 @given(st.lists(st.floats(width=32, allow_nan=False), min_size=13, max_size=13), ANY_TEXT)
@@ -179,11 +179,11 @@ def test_overwritten_numbers_are_byte_for_byte_what_python_osc_builds(
     head = (0, 7, 0, 1, 2, 1_700_000_005, 123, 1 / 64, "live", "colour", "left,right")
     expected = bundle(
         [
-            message(FRAME, FRAME_TYPES, *head, osc.shortened(instance, MAX_INSTANCE_BYTES)),
+            message(FRAME, FRAME_TYPES, *head, osc.truncate_utf8(instance, MAX_INSTANCE_BYTES)),
             *(message(JOINT + name, JOINT_TYPES, *numbers) for name in frame.joints),
         ]
     )
-    assert [bytes(d) for d in FrameBundles(small_frame(instance=instance)).filled(frame)] == [
+    assert [bytes(d) for d in FrameBundles(small_frame(instance=instance)).fill(frame)] == [
         expected
     ]
 

@@ -284,11 +284,11 @@ def test_a_disk_that_is_full_is_named(tmp_path: Path) -> None:
     writer = RecordingWriter(tmp_path / "a.mcap", RecordingParams(), 0)
     with full.open("wb") as device:
         os.dup2(device.fileno(), writer._descriptor)
-    writer.tell(rest(), 0)
+    writer.add_state(rest(), 0)
     for frame in frames(0.1):
         writer.frame(frame)
     with pytest.raises(CannotCreateError, match="any further"):
-        writer.beat(10**12)
+        writer.flush_if_due(10**12)
 
 
 @pytest.mark.parametrize("frames_before", [100, 107, 131])

@@ -75,10 +75,10 @@ def test_lists_that_do_not_belong_together_are_refused(damaged: dict[str, object
 def test_a_client_asks_for_it_whenever_it_wants() -> None:
     with running_sink() as running, client.Client(client.Link(running.endpoint)) as game:
         assert game.rest() is None
-        running.sink.tell(told())
+        running.sink.send_state(told())
         assert game.rest() == told()
         taller = msgspec.structs.replace(told(), stature_m=1.9)
-        running.sink.tell(taller)
+        running.sink.send_state(taller)
         assert game.rest() == taller
 
 

@@ -34,7 +34,7 @@ class SlowSink:
         self.let_on.wait(10.0)
         self.got.append(frame.seq)
 
-    def tell(self, message: StateMessage) -> None:
+    def send_state(self, message: StateMessage) -> None:
         self.told.append(message)
 
     def status(self) -> SinkStatus:
@@ -109,14 +109,14 @@ def test_of_states_the_newest_about_each_subject_arrives_however_many_frames_pil
     inner = SlowSink()
     sink = ThreadedSink(inner)
     calibration = CalibrationInfo("pc", "before open", ())
-    sink.tell(calibration)
+    sink.send_state(calibration)
     sink.open()
     sink.send(small_frame(seq=0))
     assert inner.busy.wait(10.0)
     other = msgspec.structs.replace(CAMERA, camera="right")
     lost = msgspec.structs.replace(CAMERA, state="lost")
     for message in (HEALTH, CAMERA, other, lost):
-        sink.tell(message)
+        sink.send_state(message)
         sink.send(small_frame(seq=1))
     inner.let_on.set()
     assert eventually(lambda: inner.got == [0, 1])

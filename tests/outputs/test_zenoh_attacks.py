@@ -26,7 +26,7 @@ from tests.outputs.frames import whole_frame
 from tests.outputs.test_zenoh_sink import HEALTH
 sink = ZenohSink(Params(port=int(sys.argv[1])), "pc")
 sink.open()
-sink.tell(HEALTH)
+sink.send_state(HEALTH)
 print("open", flush=True)
 ended = threading.Event()
 threading.Thread(target=lambda: (sys.stdin.read(), ended.set()), daemon=True).start()
@@ -79,7 +79,7 @@ def test_newcomers_are_served_beside_silent_connections() -> None:
 
 def test_messages_larger_than_any_question_are_dropped() -> None:
     with running_sink() as running, other_program(running.endpoint) as session:
-        running.sink.tell(HEALTH)
+        running.sink.send_state(HEALTH)
 
         def answers(size: int, within_s: float = GET_S) -> int:
             key = "mocapd/v1/pc/health"

@@ -39,9 +39,9 @@ def daemon(router: str, name: str, opened: ExitStack) -> ZenohSink:
     sink = ZenohSink(Params(connect=(router,)), name)
     opened.callback(sink.close)
     sink.open()
-    sink.tell(health(name))
-    sink.tell(camera(name, "left"))
-    sink.tell(camera(name, "right", "lost", "was unplugged"))
+    sink.send_state(health(name))
+    sink.send_state(camera(name, "left"))
+    sink.send_state(camera(name, "right", "lost", "was unplugged"))
     return sink
 
 
@@ -72,7 +72,7 @@ def test_all_are_listed_and_one_that_ends_is_gone(router: str) -> None:
         assert [one.name for one in list_instances(session)] == ["hall-1"]
         late = daemon(router, "hall-3", opened)
         assert eventually(lambda: len(by_name(instances)) == 3)
-        late.tell(camera("hall-3", "right"))
+        late.send_state(camera("hall-3", "right"))
         assert eventually(lambda: "2 of 2 cameras" in as_text(by_name(instances)["hall-3"]))
 
 
@@ -129,7 +129,7 @@ def test_status_of_all_says_the_worst_by_its_exit_code(
         assert "1 of 2 cameras" in one.out
         sink = daemon(router, "hall-2", opened)
         for name in ("left", "right"):
-            sink.tell(camera("hall-2", name, "lost", "was unplugged"))
+            sink.send_state(camera("hall-2", name, "lost", "was unplugged"))
         both = mocapd_here(clean_env, *words, "--json")
         assert both.code == 150
         assert [json.loads(line)["instance"] for line in both.out.splitlines()] == [

@@ -19,9 +19,9 @@ BOM = b"\xef\xbb\xbf"
 @pytest.mark.parametrize(
     ("content", "what"),
     [
-        (b"", "names nobody"),
-        (b"\n", "names nobody"),
-        (b"  \n\t\n", "names nobody"),
+        (b"", "names no user"),
+        (b"\n", "names no user"),
+        (b"  \n\t\n", "names no user"),
         (BOM + b"game:hunter2\n", "byte order mark"),
         (b"game:hunter2\nhunter2\n", "line 2 of .* has no colon"),
         (b":hunter2\n", "line 1 of .* has no user"),
@@ -57,7 +57,7 @@ def test_a_file_emptied_meanwhile_opens_nothing(tmp_path: Path) -> None:
     file.write_text("game:secret\n")
     sink = ZenohSink(Params(port=free_port(), password_file=str(file)))
     file.write_text("")
-    with pytest.raises(ConfigError, match="names nobody"):
+    with pytest.raises(ConfigError, match="names no user"):
         sink.open()
 
 

@@ -154,7 +154,7 @@ def test_status_can_be_asked_while_programs_come_and_go() -> None:
 def state_of(running: Running) -> CalibrationInfo:
     calibration = CalibrationInfo("pc", "rig.json", ())
     for message in (HEALTH, CAMERA, calibration, REST, Facing("pc", 0, -30.0, 1)):
-        running.sink.tell(message)
+        running.sink.send_state(message)
     return calibration
 
 
@@ -210,13 +210,13 @@ def test_changes_of_state_are_published_and_the_newest_is_kept() -> None:
             heard: list[zenoh.Sample] = []
 
             def is_told() -> bool:  # as soon as the daemon knows of the subscription
-                running.sink.tell(CAMERA)
+                running.sink.send_state(CAMERA)
                 heard.extend(iter(subscriber.try_recv, None))
                 return bool(heard)
 
             assert eventually(is_told)
             assert b'"state":"live"' in heard[0].payload.to_bytes()
-        running.sink.tell(msgspec.structs.replace(CAMERA, state="lost"))
+        running.sink.send_state(msgspec.structs.replace(CAMERA, state="lost"))
         ((encoding, status),) = ask(session, "mocapd/v1/pc/camera/*/status").values()
     assert encoding == "application/json;mocapd.CameraStatus.v1"
     assert status["state"] == "lost"  # type: ignore[index]
@@ -283,7 +283,7 @@ def test_it_joins_a_router_and_opens_no_socket_of_its_own() -> None:
                 assert eventually(lambda: sink.status().listeners == -1)
                 sink.send(small_frame(seq=5))
                 assert wire.decode(subscriber.recv().payload.to_bytes()).seq == 5
-            sink.tell(HEALTH)
+            sink.send_state(HEALTH)
             assert ask(game, "mocapd/v1/pc/health")
         assert eventually(lambda: sink.status().listeners == 0)
         assert "nobody listens" in sink.status().detail
@@ -300,7 +300,7 @@ def test_a_router_that_is_not_there_is_unavailable() -> None:
 def test_closed_it_takes_frames_and_state_quietly() -> None:
     sink = ZenohSink(Params(port=free_port()))
     sink.send(small_frame())
-    sink.tell(HEALTH)
+    sink.send_state(HEALTH)
     assert sink.status().detail == "closed"
     sink.close()
     sink.close()

@@ -118,7 +118,7 @@ def test_nobody_answers_in_the_daemons_place_nor_shows_that_it_lives() -> None:
         ),
         intruder.liveliness().declare_token("mocapd/v1/forged/alive"),
     ):
-        running.sink.tell(HEALTH)
+        running.sink.send_state(HEALTH)
         for key in ("mocapd/v1/pc/health", "mocapd/v1/*/health", "mocapd/v1/pc/rest_skeleton/0"):
             replies = list(game.get(key, target=zenoh.QueryTarget.ALL, timeout=GET_S))
             assert all(one.ok and one.ok.payload.to_bytes() != b"forged" for one in replies), key
@@ -140,7 +140,7 @@ def test_nobody_tells_others_of_the_daemons_state() -> None:
             intruder.put(key, b"forged")
             intruder.delete(key)
             list(intruder.get(key, timeout=GET_S))  # by now both have arrived
-            running.sink.tell(HEALTH)
+            running.sink.send_state(HEALTH)
             heard.extend(iter(subscriber.try_recv, None))
             return len(heard) >= 3
 

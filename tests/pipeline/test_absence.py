@@ -35,7 +35,7 @@ def fed(absence: Absence, frames: int = 10, period_ns: int = PERIOD_NS) -> int:
     now_ns = BEGIN_NS
     for _ in range(frames):
         now_ns += period_ns
-        assert absence.tell(now_ns) is None
+        assert absence.next_body(now_ns) is None
         body = live(now_ns - DELAY_NS)
         assert absence.came(body, now_ns) is body
     return now_ns
@@ -45,7 +45,7 @@ def told(absence: Absence, from_ns: int, seconds: float) -> list[tuple[int, Body
     """Asked every 5 ms: what was told, and when."""
     found = []
     for now_ns in range(from_ns, from_ns + round(seconds * 1000) * MS, 5 * MS):
-        body = absence.tell(now_ns)
+        body = absence.next_body(now_ns)
         if body is not None:
             found.append((now_ns, body))
     return found
@@ -115,7 +115,7 @@ def test_of_an_empty_room_nothing_coasts() -> None:
 
 def test_before_the_first_frame_it_is_told_after_a_while_that_nobody_is_known() -> None:
     absence = Absence("canned", N, coast_s=0.5)
-    assert absence.tell(BEGIN_NS) is None  # not begun
+    assert absence.next_body(BEGIN_NS) is None  # not begun
     absence.begin(BEGIN_NS)
     found = told(absence, BEGIN_NS, 5.5)
     assert [now_ns for now_ns, _ in found] == [

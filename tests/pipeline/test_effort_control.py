@@ -26,7 +26,7 @@ def changes(
         before = control.effort
         now_s = began_s + step_s(began_s, before)
         done, worst_s = newest, max(worst_s, now_s - arrived_s)
-        after = control.tracked(
+        after = control.update(
             nanoseconds(arrived_s), newest, nanoseconds(now_s - began_s), nanoseconds(now_s)
         )
         if after is not before:
@@ -105,7 +105,7 @@ def test_a_pause_of_the_cameras_is_no_load() -> None:
     control = EffortControl()
     for k in range(40):  # one frame set in two seconds, each step longer than a usual period
         t_ns = nanoseconds(2.0 * k)
-        control.tracked(t_ns, k + 1, nanoseconds(0.2), t_ns + nanoseconds(0.2))
+        control.update(t_ns, k + 1, nanoseconds(0.2), t_ns + nanoseconds(0.2))
     assert control.effort is FULL
 
 

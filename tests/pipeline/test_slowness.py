@@ -40,7 +40,7 @@ def verdicts(
     for gap in gaps:
         number += gap
         now_ns = round(number / rate_hz * NS_PER_S)
-        found.append(watch.tracked(number, round(gap / rate_hz * NS_PER_S), now_ns, others))
+        found.append(watch.update(number, round(gap / rate_hz * NS_PER_S), now_ns, others))
     return found
 
 

@@ -35,7 +35,7 @@ class Recorder:
     def send(self, frame: SkeletonFrame) -> None:
         self.frames.append(frame)
 
-    def tell(self, message: StateMessage) -> None:
+    def send_state(self, message: StateMessage) -> None:
         self.states.append(message)
 
     def status(self) -> SinkStatus:

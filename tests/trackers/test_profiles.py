@@ -62,7 +62,7 @@ def test_a_profile_has_the_cues_that_rig_and_clothes_suit(
     clothes: bool,
 ) -> None:
     messages: list[str] = []
-    build(name, calibration, Resources(tell=messages.append))
+    build(name, calibration, Resources(warn=messages.append))
     assert cues == [(name, shirt, clothes, None)]
     assert messages == []
 
@@ -71,7 +71,7 @@ def test_a_pair_in_one_place_has_the_shirt_alone_and_one_message_says_so(
     cues: list[tuple[str, bool, bool, ProfileParams | None]],
 ) -> None:
     messages: list[str] = []
-    build("auto", known(0.0, 0.0), Resources(tell=messages.append))
+    build("auto", known(0.0, 0.0), Resources(warn=messages.append))
     assert cues == [("auto", True, False, None)]
     (message,) = messages
     assert "legs and head" in message

@@ -58,7 +58,7 @@ class Recorder:
                 self._write(found)
             if self._pictures is not None:
                 self._pictures.drain(self._writer, time.time_ns())
-            self._writer.beat(monotonic_ns())
+            self._writer.flush_if_due(monotonic_ns())
             line.say(partial(self._text, now_s - began_s, now_s - heard_s))
 
     def _write(self, found: Published) -> None:
@@ -68,7 +68,7 @@ class Recorder:
                 self._rest = message
             else:
                 self._calibration = message
-            self._writer.tell(message, self._unix_ns or time.time_ns())
+            self._writer.add_state(message, self._unix_ns or time.time_ns())
             return
         self._unix_ns = message.capture_unix_ns
         if not self._attached:

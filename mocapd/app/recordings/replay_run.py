@@ -141,7 +141,7 @@ class Replay:
         assert not isinstance(state, SkeletonFrame)
         told = msgspec.structs.replace(state, instance=self._instance)
         for sink in self._sinks:
-            sink.tell(told)
+            sink.send_state(told)
 
 
 def _step_ns(before: SkeletonFrame | None, frame: SkeletonFrame) -> int:

@@ -1,1 +1,1 @@
-"""Commands for whoever looks after a daemon that runs for months."""
+"""Commands for the operation of a long-running daemon."""

@@ -1,4 +1,4 @@
-"""`mocapd completion`, and what a shell asks when somebody presses Tab."""
+"""`mocapd completion`, and the answers to a shell's completion requests."""
 
 import os
 from enum import StrEnum
@@ -8,14 +8,14 @@ import typer
 from typer._completion_classes import completion_init
 from typer._completion_shared import get_completion_script
 
-VARIABLE = "_MOCAPD_COMPLETE"  # that the shell's script sets; typer answers it and ends
+VARIABLE = "_MOCAPD_COMPLETE"  # set by the shell's script; typer then prints completions and exits
 
 
-Shell = StrEnum("Shell", ["bash", "zsh", "fish"])  # whose completion can be loaded from a file
+Shell = StrEnum("Shell", ["bash", "zsh", "fish"])  # those that load completions from a file
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("completion")(completion)
 
 
@@ -31,6 +31,6 @@ def completion(shell: Annotated[Shell, typer.Argument(help="Which shell.")]) -> 
 
 
 def ready_to_complete() -> None:
-    """Where a shell asks: typer's own formats for what it is answered."""
+    """Answer a shell's completion request in typer's formats."""
     if VARIABLE in os.environ:
         completion_init()

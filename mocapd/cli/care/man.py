@@ -4,7 +4,7 @@ import typer
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
 
     @app.command("man")
     def man() -> None:

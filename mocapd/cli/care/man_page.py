@@ -10,7 +10,7 @@ import typer.main
 import mocapd
 
 if TYPE_CHECKING:
-    from typer._click import Command  # which typer brings itself
+    from typer._click import Command  # part of typer
 
 _EXIT_CODES = (
     ("0", "done; also after SIGTERM, or when its terminal is closed"),
@@ -36,7 +36,7 @@ _ENVIRONMENT = (
     ("MOCAPD_KEY, MOCAPD_SECTION_KEY", "one key each; mocapd check-config prints what is in force"),
     ("NO_COLOR", "no colours"),
 )
-# The backslash first: the others bring their own.
+# The backslash first: the other escapes contain one.
 _ESCAPES = (
     ("\\", r"\e"), ("-", r"\-"), ('"', r"\(dq"), ("'", r"\(aq"), ("`", r"\(ga"), ("^", r"\(ha"), ("~", r"\(ti"),
 )  # fmt: skip
@@ -44,7 +44,7 @@ _NOT_ASCII = re.compile(r"[^\x20-\x7e]")
 
 
 def man_page(app: typer.Typer) -> str:
-    """The whole page; the same bytes for the same version."""
+    """The whole page; deterministic for a version."""
     group = typer.main.get_command(app)
     assert isinstance(group, typer.core.TyperGroup)
     top = typer.Context(group, info_name="mocapd")
@@ -69,17 +69,17 @@ def man_page(app: typer.Typer) -> str:
 
 
 def _command(command: "Command", context: typer.Context) -> Iterator[str]:
-    """Its usage, its help, its arguments and options, its example."""
+    """A command's section: usage, help, arguments and options, example."""
     usage = " ".join(command.collect_usage_pieces(context))
     yield f'.SS "{_text(f"mocapd {context.info_name} {usage}")}"'
     example = ""
     for number, paragraph in enumerate((command.help or "").split("\n\n")):
-        told = " ".join(paragraph.split())
-        if told.startswith("Example: "):
-            example = told.removeprefix("Example: ")
+        text = " ".join(paragraph.split())
+        if text.startswith("Example: "):
+            example = text.removeprefix("Example: ")
             continue
         yield from ([".PP"] if number else [])
-        yield _text(told)
+        yield _text(text)
     for parameter in command.params:
         record = parameter.get_help_record(context)
         if record is not None:
@@ -94,10 +94,10 @@ def _table(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[str]:
         yield from (".TP", rf"\fB{_text(term)}\fR", _text(meaning))
 
 
-def _text(told: str) -> str:
-    """As roff shows it: nothing in it is a command, and a hyphen can be copied as one."""
-    told = " ".join(told.split())
+def _text(text: str) -> str:
+    """Escaped for roff: nothing in it is a command, and a hyphen can be copied as one."""
+    text = " ".join(text.split())
     for mark, escape in _ESCAPES:
-        told = told.replace(mark, escape)
-    told = _NOT_ASCII.sub(lambda found: rf"\[u{ord(found[0]):04X}]", told)
-    return rf"\&{told}" if told.startswith(".") else told
+        text = text.replace(mark, escape)
+    text = _NOT_ASCII.sub(lambda match: rf"\[u{ord(match[0]):04X}]", text)
+    return rf"\&{text}" if text.startswith(".") else text

@@ -6,17 +6,16 @@ from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("reload")(reload)
 
 
 def reload(config: ConfigOption = None, settings: SetOption = None) -> None:
     """Have the running daemon read its config again.
 
-    And its calibration, from where it was started with. The stream goes on, but for the moment in which cameras
-    are closed and opened. All of it is checked first: what is wrong is told with its key, and the daemon goes
-    on as it was; the exit code is then that of `mocapd run`, such as 78. What only the next start takes up is
-    named.
+    And its calibration, from the same file as at its start. The stream continues, except while cameras are closed and
+    opened. All of it is checked first: an error names its key, and the daemon continues unchanged; the exit code is
+    then that of `mocapd run`, such as 78. Changes that need a restart are named.
 
     Example: mocapd reload
     """

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from mocapd.client import Link
     from mocapd.control.control_messages import StatusReport
 
-# As of an init script's `status` (LSB), where 150 to 199 are the program's own.
+# Exit codes of an init script's `status` (LSB); 150 to 199 are application-specific.
 ABLE = 0
 NOT_RUNNING = 3
 UNKNOWN = 4
@@ -21,7 +21,7 @@ SLOW = 151
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("status")(status)
 
 
@@ -37,12 +37,12 @@ def status(
         typer.Option(help="With --all: the router, or a daemon [default: that of the config]"),
     ] = None,
 ) -> None:
-    """Print how the running daemon fares.
+    """Print the state of the running daemon.
 
-    State, tracker, rate, latency, cameras, outputs, calibration, last trouble. Ends with 0 when it tracks or
-    could, as soon as somebody comes; 150 when it runs and cannot: it is still starting, or no camera delivers;
+    State, tracker, rate, latency, cameras, outputs, calibration, last trouble. Ends with 0 when it tracks, or
+    waits for a person; 150 when it cannot track: it is still starting, or no camera delivers;
     151 when it is too slow: it skips a large share of the pictures;
-    3 when none is running; 4 when one is there and does not answer, or is another user's. Of several that run
+    3 when none is running; 4 when one does not answer, or is another user's. Of several running daemons it shows
     the one of this configuration, else all. With --all the worst of those on the bus counts.
 
     Example: mocapd status --json | jq .state
@@ -84,7 +84,7 @@ def _print_all(link: "Link", as_json: bool) -> int:
 
 
 def exit_code(report: "StatusReport") -> int:
-    """Of one daemon that answers."""
+    """The exit code for one daemon that answers."""
     if report.state == "slow":
         return SLOW
     return ABLE if report.state in ("tracking", "nobody") else UNABLE

@@ -15,7 +15,7 @@ Legs = StrEnum("Legs", ["seen", "all"])
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("export")(export)
 
 
@@ -23,7 +23,7 @@ def export(
     file: Annotated[Path, typer.Argument(help="A recording of `mocapd record`.")],
     to: Annotated[ExportTo, typer.Option("--to", help="The format.")],
     out: Annotated[
-        Path | None, typer.Option("--out", help="The file to write [default: beside FILE]")
+        Path | None, typer.Option("--out", help="The file to write [default: in FILE's folder]")
     ] = None,
     rate: Annotated[
         float | None,
@@ -41,7 +41,7 @@ def export(
     ] = Up["y"],
     feet: Annotated[
         Feet,
-        typer.Option(help="floor: move the body up or down so that a standing foot is on it."),
+        typer.Option(help="floor: move the body up or down to put its feet on the floor."),
     ] = Feet["tracked"],
     legs: Annotated[
         Legs, typer.Option(help="seen: leave out a leg that no camera saw; all: export the guess.")
@@ -69,17 +69,17 @@ def export(
     path = out if out is not None else file.with_suffix(f".{to}")
     target = export_file(to, path, force, inputs=(file,))
     target.check()
-    found = motion_of(RecordingReader(file), person, rate)
-    motion, seen = prepared_motion(found.motion, to, options)
+    recorded = motion_of(RecordingReader(file), person, rate)
+    motion, note = prepared_motion(recorded.motion, to, options)
     write_export(motion, to, target)
     gaps = f", {int(motion.gap.sum())} of them in gaps" if motion.gap.any() else ""
-    lost = f"; {found.lost} frames were without a person" if found.lost else ""
+    lost = f"; {recorded.lost} frames were without a person" if recorded.lost else ""
     others = (
-        f"; {found.other_skeleton} frames of another skeleton were left out"
-        if found.other_skeleton
+        f"; {recorded.other_skeleton} frames of another skeleton were left out"
+        if recorded.other_skeleton
         else ""
     )
-    guessed = f"; {seen}" if seen else ""
+    guessed = f"; {note}" if note else ""
     typer.echo(
         f"{path}: {len(motion.joints_m)} frames at {motion.rate_hz:g} Hz{gaps}{lost}{others}{guessed}",
         err=True,

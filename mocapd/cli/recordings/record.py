@@ -9,7 +9,7 @@ from mocapd.cli.options import ConfigOption, ForceOption, SetOption, effective_c
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("record")(record)
 
 
@@ -32,7 +32,7 @@ def record(
         typer.Option("--exact", help="Frames bit by bit as published: seven times the size."),
     ] = False,
     foxglove_hz: Annotated[
-        float, typer.Option(help="How often bones are told to Foxglove [Hz]; 0: never.", min=0.0)
+        float, typer.Option(help="Rate of bone transforms for Foxglove [Hz]; 0: none.", min=0.0)
     ] = 10.0,
     endpoint: Annotated[
         str | None,

@@ -19,7 +19,7 @@ SHOW_EVERY_S = 0.25
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("replay")(replay)
 
 
@@ -61,7 +61,9 @@ def replay(
     effective = effective_config(config, settings, None, None, **flags).config
     set_up_logs(effective.log_level)
     name = instance_name(effective.instance)
-    sinks = build_sinks(_chosen(effective.outputs, outputs or ()), name, effective.prediction)
+    sinks = build_sinks(
+        _selected_outputs(effective.outputs, outputs or ()), name, effective.prediction
+    )
     if not sinks:
         raise ConfigError("no output is enabled", "outputs", "enable one, or name it by --output")
     signals = Signals()
@@ -78,10 +80,10 @@ def replay(
     raise typer.Exit(signals.exit_code)
 
 
-def _chosen(
+def _selected_outputs(
     sections: "Mapping[str, OutputSection]", names: "Sequence[str]"
 ) -> "Mapping[str, OutputSection]":
-    """Those that are named, and enabled for that; without names as configured. Raises UsageError."""
+    """The named outputs, enabled; without names all as configured. Raises UsageError."""
     from dataclasses import replace
     from typing import Any, cast
 

@@ -6,7 +6,7 @@ import typer
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command(
         "as-service",
         context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False},

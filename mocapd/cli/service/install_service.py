@@ -25,7 +25,7 @@ RootOption = Annotated[
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make them commands."""
+    """Register the commands."""
     app.command("install-service")(install_service)
     app.command("uninstall-service")(uninstall_service)
 

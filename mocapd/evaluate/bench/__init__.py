@@ -1,1 +1,1 @@
-"""What a step, a live daemon and a long run cost."""
+"""Benchmarks of a tracker's step, a live daemon and a long run."""

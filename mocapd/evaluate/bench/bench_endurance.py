@@ -1,4 +1,4 @@
-"""Whether a tracker's step stays as quick, and memory as small, when it runs for a long time."""
+"""Measures a tracker's step time and memory over a long run."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -36,11 +36,11 @@ class EnduranceFigures:
 
 
 def endure(
-    ready: ReadyTracker, recording: BenchInput, minutes: float, tell: Callable[[int, int], None]
+    ready: ReadyTracker, recording: BenchInput, minutes: float, progress: Callable[[int, int], None]
 ) -> EnduranceFigures:
-    """Run the recording round and round for so many minutes by the clock, as fast as it goes.
+    """Track the recording repeatedly for so many minutes by the clock, as fast as possible.
 
-    Time goes on from round to round. `tell` hears of the seconds that have passed, and of all.
+    Capture times continue over the repetitions. `progress` gets the seconds passed, and of all.
     """
     tracker, shape = ready.tracker, ready.shape
     step_ns: list[tuple[int, int]] = []  # by the clock, of the processor
@@ -49,15 +49,15 @@ def endure(
     started_s = time.monotonic()
     with IdleCollection() as garbage:
         for chunk in _rounds(recording):
-            for one in chunk:
+            for frame_set in chunk:
                 cpu_ns, start_ns = time.process_time_ns(), time.perf_counter_ns()
-                shape = tracker.step(one, shape).shape
+                shape = tracker.step(frame_set, shape).shape
                 wall_ns = time.perf_counter_ns() - start_ns
                 step_ns.append((wall_ns, time.process_time_ns() - cpu_ns))
             garbage.idle(time.monotonic_ns())
             minute = (time.monotonic() - started_s) / 60.0
             rss.append((minute, process.memory_info().rss / BYTES_PER_MB))
-            tell(round(60.0 * min(minute, minutes)), round(60.0 * minutes))
+            progress(round(60.0 * min(minute, minutes)), round(60.0 * minutes))
             if minute >= minutes:
                 break
     return _figures(np.array(step_ns) / NS_PER_MS, np.array(rss))
@@ -80,7 +80,7 @@ def _figures(step_ms: Floats, rss: Floats) -> EnduranceFigures:
 
 
 def _rounds(recording: BenchInput) -> Iterator[list[FrameSet]]:
-    """The chunks of a recording for ever, later by one length in each round."""
+    """The chunks of a recording, repeated for ever with increasing times."""
     offset_ns = 0
     while True:
         end_ns = offset_ns

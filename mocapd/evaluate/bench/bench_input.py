@@ -1,4 +1,4 @@
-"""What a benchmark runs on: the frame sets of a capture folder or of a simulated scenario, decoded."""
+"""Input of a benchmark: the decoded frame sets of a capture folder or of a simulated scenario."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -16,27 +16,27 @@ CHUNK = 30  # frame sets decoded at a time; of two 640x480 cameras they take 55 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BenchInput:
-    """`sets` begins the recording of `count` sets anew each time, and decodes as it is read."""
+    """`sets` iterates over the recording of `count` frame sets from its start, decoding lazily."""
 
     name: str
-    known: Calibration
+    calibration: Calibration
     count: int
     sets: Callable[[], Iterable[FrameSet]]
 
     def chunks(self) -> Iterator[list[FrameSet]]:
-        """All frame sets, so many at a time that decoding is over before they are used."""
+        """All frame sets in chunks, each decoded before its use."""
         sets = iter(self.sets())
         while chunk := list(islice(sets, CHUNK)):
             yield chunk
 
 
 def open_input(source: str, cache_dir: Path, stature_m: float, progress: Progress) -> BenchInput:
-    """A capture folder or `sim:SCENARIO`, whose film is rendered when it is not in the cache.
+    """A capture folder or `sim:SCENARIO`, rendered if it is not in the cache.
 
-    `stature_m` [m] is for folders that do not say. Raises InputError, ConfigError or
+    `stature_m` [m] is the default for folders without one. Raises InputError, ConfigError or
     CannotCreateError.
     """
     origin = open_origin(source, cache_dir, progress)
-    known = from_origin(origin).assuming(stature_m)
+    calibration = from_origin(origin).assuming(stature_m)
     name = source if is_simulated(source) else Path(source).name
-    return BenchInput(name, known, origin.count, origin.frame_sets)
+    return BenchInput(name, calibration, origin.count, origin.frame_sets)

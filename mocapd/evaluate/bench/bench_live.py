@@ -1,4 +1,4 @@
-"""The real daemon in a process of its own on simulated webcams, seen by a real subscriber."""
+"""Benchmark of the real daemon in its own process on simulated webcams, by a real subscriber."""
 
 import math
 import os
@@ -25,13 +25,13 @@ from mocapd.outputs.messages import Health
 from mocapd.types import Floats
 
 INSTANCE = "bench"
-FIRST_FRAME_S = 150.0  # how long to wait for the first frame; its first start ever compiles [s]
-LOOK_EVERY_S = 1.0  # how often memory is read [s]
+FIRST_FRAME_S = 150.0  # timeout of the first frame; the very first start compiles kernels [s]
+LOOK_EVERY_S = 1.0  # sampling interval of memory [s]
 STOP_S = 5.0
 
 
 class Looks(Protocol):
-    """Somebody who looks at the page; `pictures` counts those that came."""
+    """A client of the page; `pictures` counts the received ones."""
 
     pictures: int
 
@@ -41,7 +41,7 @@ Watching = Callable[[Path], AbstractContextManager[Looks]]  # given the daemon's
 
 @dataclass(frozen=True, slots=True)
 class LiveFigures:
-    """What the subscriber and the system saw of a daemon in `seconds` [s], from its first frame on.
+    """Measurements of a daemon by a subscriber and the system over `seconds` [s] from its first frame on.
 
     start_s: from the start of the process to the first published frame [s]; rate_hz: frames
     received per second; dropped: share of all frame sets, from the very first, that were displaced
@@ -77,17 +77,16 @@ class LiveFigures:
 def bench_live(
     command: Sequence[str], cameras: int, duration_s: float, watching: Watching | None = None
 ) -> LiveFigures:
-    """Run a daemon for so long [s] after its first frame and look at it from outside.
+    """Run a daemon for `duration_s` [s] after its first frame and measure it from outside.
 
-    `command` starts `mocapd run` without its ports and instance, which are chosen here, on so many
-    cameras. `watching`: who looks at its page meanwhile. Raises UnavailableError when it does not
-    start, or ends by itself.
+    `command` starts `mocapd run` on so many cameras; ports and instance are chosen here. `watching`: a client of its
+    page, if any. Raises UnavailableError when it does not start, or ends by itself.
     """
     with ExitStack() as opened:
-        # apart from the page of a daemon that this user may have running
+        # separate from the page of the user's own daemon
         runtime_dir = Path(opened.enter_context(tempfile.TemporaryDirectory()))
         osc = opened.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
-        osc.bind(("127.0.0.1", 0))  # somebody listens; what is not read the system discards
+        osc.bind(("127.0.0.1", 0))  # a receiver; the system discards what it does not read
         endpoint = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
         started_ns = monotonic_ns()
         daemon = opened.enter_context(
@@ -124,7 +123,7 @@ def _figures(
     latency_ms, arrival_ms = (published - captured) / 1e6, (arrived - captured) / 1e6
     sent = heard[-1].frame.seq - heard[0].frame.seq + 1
     rate_hz = (n - 1) * NS_PER_S / float(arrived[-1] - arrived[0])
-    # frames before the first that was heard went out while the subscriber was still connecting
+    # earlier frames were sent before the subscriber was connected
     first_ns = first.frame.publish_monotonic_ns - round(first.frame.seq * NS_PER_S / rate_hz)
     settled = rss[len(rss) // 2 :]
     return LiveFigures(
@@ -152,7 +151,7 @@ def _figures(
 
 @contextmanager
 def _running(command: Sequence[str], runtime_dir: Path) -> Iterator[subprocess.Popen[bytes]]:
-    """A daemon, asked to end on leaving. What it says on stderr is told when it ends by itself."""
+    """A daemon, terminated on exit. If it ends by itself, the error has the last line of its stderr."""
     env = {name: value for name, value in os.environ.items() if name != "RUNTIME_DIRECTORY"}
     env["XDG_RUNTIME_DIR"] = str(runtime_dir)
     with tempfile.TemporaryFile() as said:
@@ -160,7 +159,7 @@ def _running(command: Sequence[str], runtime_dir: Path) -> Iterator[subprocess.P
         try:
             yield process
             if process.poll() is not None:
-                raise _ended(said)
+                raise _exit_error(said)
         finally:
             process.send_signal(signal.SIGTERM)
             try:
@@ -170,7 +169,7 @@ def _running(command: Sequence[str], runtime_dir: Path) -> Iterator[subprocess.P
                 process.wait()
 
 
-def _ended(said: IO[bytes]) -> UnavailableError:
+def _exit_error(said: IO[bytes]) -> UnavailableError:
     said.seek(0)
     lines = said.read().decode(errors="replace").strip().splitlines()
     return UnavailableError("the daemon ended by itself", "bench", lines[-1] if lines else "")

@@ -1,4 +1,4 @@
-"""What recording costs: megabytes an hour, time a frame, and what a kill takes along. By `mocapd bench --recording`."""
+"""Measures the cost of recording: megabytes an hour, time a frame, and the loss at a kill. `mocapd bench --recording`."""
 
 import itertools
 import subprocess
@@ -28,8 +28,8 @@ _PERIOD_NS = round(NS_PER_S / HZ)
 
 @dataclass(frozen=True, slots=True)
 class RecordingCost:
-    """mb_an_hour: frames alone, with bones for Foxglove at 10 Hz, and bit by bit as published; frame_ms: median and 99th
-    percentile of one frame, handing chunks to the file included; lost_s: of each kill."""
+    """mb_an_hour: frames alone, with bones for Foxglove at 10 Hz, and exact as published; frame_ms: median and 99th
+    percentile of one frame, with writing of chunks; lost_s: of each kill."""
 
     mb_an_hour: tuple[float, float, float]
     frame_ms: tuple[float, float]
@@ -37,10 +37,10 @@ class RecordingCost:
 
 
 def recording_cost(path: Path, hours: float) -> RecordingCost:
-    """Of the motion in this recording, over and over at HZ. Raises InputError."""
+    """The cost for the motion in this recording, repeated at HZ. Raises InputError."""
     items = list(RecordingReader(path).everything())
     if not any(isinstance(item, SkeletonFrame) and item.joints for item in items):
-        raise InputError("nobody is tracked in it", str(path), "record a person")
+        raise InputError("no person is tracked in it", str(path), "record a person")
     sizes: list[float] = []
     usual_ms = [0.0]
     with tempfile.TemporaryDirectory() as folder:
@@ -55,13 +55,13 @@ def recording_cost(path: Path, hours: float) -> RecordingCost:
             target.unlink()
             if params == RecordingParams():
                 usual_ms = took_ms
-        lost_s = tuple(_killed(path, Path(folder), after_s) for after_s in KILLED_AFTER_S)
+        lost_s = tuple(_loss_after_kill(path, Path(folder), after_s) for after_s in KILLED_AFTER_S)
     median, p99 = np.percentile(usual_ms, [50, 99])
     return RecordingCost((sizes[0], sizes[1], sizes[2]), (float(median), float(p99)), lost_s)
 
 
 def as_lines(cost: RecordingCost) -> list[str]:
-    """For people."""
+    """The figures as text."""
     alone, usual, exact = cost.mb_an_hour
     return [
         f"{usual:.1f} MB an hour at {HZ:g} Hz ({alone:.1f} without bones for Foxglove, {exact:.1f} with --exact)",
@@ -71,23 +71,23 @@ def as_lines(cost: RecordingCost) -> list[str]:
 
 
 def _write(path: Path, items: list[Recorded], params: RecordingParams, count: int) -> list[float]:
-    """So many frames as fast as it goes, as if in their own time; what each took [ms]."""
+    """Write so many frames as fast as possible, with their own times; returns the duration of each [ms]."""
     took_ms = []
     with RecordingWriter(path, params, 0) as writer:
         for item in itertools.islice(_endless(writer, items), count):
             began_s = time.perf_counter()
             writer.frame(item)
-            writer.beat(item.capture_monotonic_ns)
+            writer.flush_if_due(item.capture_monotonic_ns)
             took_ms.append(1e3 * (time.perf_counter() - began_s))
     return took_ms
 
 
 def _endless(writer: RecordingWriter, items: list[Recorded]) -> Iterator[SkeletonFrame]:
-    """Its frames at HZ, over and over; states are told at once."""
+    """Its frames at HZ, repeated for ever; states are written first."""
     unix_ns = unix_from_monotonic_ns()
     for item in items:
         if isinstance(item, RestSkeleton | CalibrationInfo):
-            writer.tell(item, unix_ns)
+            writer.add_state(item, unix_ns)
     frames = itertools.cycle(item for item in items if isinstance(item, SkeletonFrame))
     for number, frame in enumerate(frames):
         t_ns = number * _PERIOD_NS
@@ -100,8 +100,8 @@ def _endless(writer: RecordingWriter, items: list[Recorded]) -> Iterator[Skeleto
         )
 
 
-def _killed(source: Path, folder: Path, after_s: float) -> float:
-    """How much of what a process had written in real time was lost when it was killed [s]."""
+def _loss_after_kill(source: Path, folder: Path, after_s: float) -> float:
+    """The recorded time that a killed process lost [s]."""
     target = folder / "killed.mcap"
     name = write_in_real_time.__name__
     program = f"from {__name__} import {name}; {name}(*sys.argv[1:])"
@@ -121,7 +121,7 @@ def _killed(source: Path, folder: Path, after_s: float) -> float:
 
 
 def write_in_real_time(source: str, target: str) -> None:
-    """Until it is killed; the number of each frame goes to stdout once it is handed over."""
+    """Write until killed; prints the number of each written frame to stdout."""
     items = list(RecordingReader(Path(source)).everything())
     with RecordingWriter(Path(target), RecordingParams(), time.monotonic_ns()) as writer:
         began_ns = time.monotonic_ns()
@@ -131,4 +131,4 @@ def write_in_real_time(source: str, target: str) -> None:
             writer.frame(frame)
             sys.stdout.write(f"{frame.seq}\n")
             sys.stdout.flush()
-            writer.beat(time.monotonic_ns())
+            writer.flush_if_due(time.monotonic_ns())

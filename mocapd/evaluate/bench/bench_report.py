@@ -1,4 +1,4 @@
-"""The figures of a benchmark as one JSON object, and as tables for people."""
+"""The figures of a benchmark as one JSON object, and as text tables."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -14,15 +14,15 @@ _DIGITS = 3  # microseconds of a millisecond
 
 
 def as_json(found: BenchResults) -> dict[str, Any]:
-    """By tracker, what was measured, and on which `input`."""
+    """The figures by tracker, each with its `input`."""
     measured: Mapping[str, Any] = {**found.steps, **found.endurance, **found.live}
-    told = {name: {"input": found.recording, **asdict(one)} for name, one in measured.items()}
-    rounded: dict[str, Any] = _rounded(told)
+    figures = {name: {"input": found.recording, **asdict(f)} for name, f in measured.items()}
+    rounded: dict[str, Any] = _round(figures)
     return rounded
 
 
 def as_text(found: BenchResults) -> str:
-    """Tables that read well in a terminal and are Markdown at once."""
+    """Tables for a terminal that are also valid Markdown."""
     parts = [f"Input: {found.recording}"]
     if found.steps:
         parts.append(step_table(found.steps))
@@ -35,12 +35,12 @@ def as_text(found: BenchResults) -> str:
     return "\n\n".join(parts)
 
 
-def _rounded(value: Any) -> Any:
+def _round(value: Any) -> Any:
     if isinstance(value, float):
         return round(value, _DIGITS)
     if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    return [_rounded(item) for item in value] if isinstance(value, tuple) else value
+        return {key: _round(item) for key, item in value.items()}
+    return [_round(item) for item in value] if isinstance(value, tuple) else value
 
 
 def step_table(steps: Mapping[str, StepFigures]) -> str:

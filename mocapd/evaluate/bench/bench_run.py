@@ -1,4 +1,4 @@
-"""Benchmarks of one recording: which trackers, built how, and what was found."""
+"""Benchmarks of one recording with each suitable tracker."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ from mocapd.tracking.tracking_state import TrackingStateParams
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BenchResults:
-    """What was measured, by tracker; `skipped` says why a tracker is absent."""
+    """The measurements by tracker; `skipped`: the reason for each missing tracker."""
 
     recording: str
     steps: dict[str, StepFigures] = field(default_factory=dict)
@@ -40,32 +40,32 @@ class Bench:
         """Time every step of the whole recording. Raises ConfigError for what a tracker lacks."""
         found = BenchResults(self.recording.name)
         for name, ready in self._trackers(found):
-            tell = partial(self.progress, f"timing {name}")
-            found.steps[name] = bench_tracker(ready, self.recording, tell)
+            progress = partial(self.progress, f"timing {name}")
+            found.steps[name] = bench_tracker(ready, self.recording, progress)
         return found
 
     def endurance(self, minutes: float) -> BenchResults:
         """Run each tracker for so long [min]. Raises ConfigError for what a tracker lacks."""
         found = BenchResults(self.recording.name)
         for name, ready in self._trackers(found):
-            tell = partial(self.progress, f"running {name}, seconds")
-            found.endurance[name] = endure(ready, self.recording, minutes, tell)
+            progress = partial(self.progress, f"running {name}, seconds")
+            found.endurance[name] = endure(ready, self.recording, minutes, progress)
         return found
 
     def live(
         self, command: Sequence[str], duration_s: float, watching: Watching | None = None
     ) -> BenchResults:
-        """Run the daemon for so long [s] with each tracker; see `bench_live` for the command and
-        for who is watching.
+        """Run the daemon for `duration_s` [s] with each tracker; see `bench_live` for `command` and
+        `watching`.
 
-        Each tracker is built and stepped here first, so that the daemon finds its caches warm.
+        Each tracker is built and stepped here first, to warm the daemon's caches.
         Raises ConfigError for what a tracker lacks, UnavailableError when the daemon does not run.
         """
         found = BenchResults(self.recording.name)
-        rig = self.recording.known.rig
+        rig = self.recording.calibration.rig
         for name, ready in self._trackers(found):
-            for one in next(self.recording.chunks()):
-                ready.tracker.step(one, ready.shape)
+            for frame_set in next(self.recording.chunks()):
+                ready.tracker.step(frame_set, ready.shape)
             self.progress(f"running the daemon with {name} for {duration_s:.0f} s", 0, 1)
             found.live[name] = bench_live(
                 (*command, "--tracker", name),
@@ -76,11 +76,11 @@ class Bench:
         return found
 
     def _trackers(self, found: BenchResults) -> Iterator[tuple[str, ReadyTracker]]:
-        """Each when it is its turn; only one is in memory."""
+        """One at a time: only one is in memory."""
         for name in (self.tracker,) if self.tracker else TRACKERS:
             resources = cached(self.cache_dir, self.progress, self.tracking)
             try:
-                ready = ready_tracker(name, self.recording.known, resources)
+                ready = ready_tracker(name, self.recording.calibration, resources)
             except ConfigError as error:
                 if self.tracker:
                     raise

@@ -1,4 +1,4 @@
-"""What one step of a tracker costs: time, processor time, memory, and how the time is spent."""
+"""Measures one step of a tracker: time, processor time, memory, and the time of each stage."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -14,7 +14,7 @@ from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.tracking.base import Tracker
 from mocapd.types import FrameSet
 
-REST = "rest"  # what is left of a step after its last named stage
+REST = "rest"  # the part of a step after its last named stage
 NS_PER_MS = 1e6
 BYTES_PER_MB = 1e6
 
@@ -60,36 +60,36 @@ class StageClock:
         self._last_ns = 0
 
     def start(self) -> None:
-        """A step begins."""
+        """Start a step."""
         self._stages = {}
         self._last_ns = time.perf_counter_ns()
 
     def mark(self, stage: str) -> None:
-        """The stage ends now; it began when the one before ended."""
+        """End the stage, which began at the end of the one before."""
         now_ns = time.perf_counter_ns()
         self._stages[stage] = self._stages.get(stage, 0) + now_ns - self._last_ns
         self._last_ns = now_ns
 
-    def taken(self) -> dict[str, int]:
-        """What each stage of this step took [ns]."""
+    def stages_ns(self) -> dict[str, int]:
+        """Time of each stage of this step [ns]."""
         return self._stages
 
 
 def bench_tracker(
-    ready: ReadyTracker, recording: BenchInput, tell: Callable[[int, int], None]
+    ready: ReadyTracker, recording: BenchInput, progress: Callable[[int, int], None]
 ) -> StepFigures:
-    """Run it through the recording twice and time the second run; `tell` hears of sets done, in all.
+    """Track the recording twice and time the second run; `progress` gets the sets done, and of all.
 
-    The first run compiles what is not compiled yet and touches all memory; in between the tracker
-    is reset, so that the second finds the person anew.
+    The first run compiles missing kernels and touches all memory. The tracker is reset in between, so that the second
+    run finds the person again.
     """
     tracker, shape = ready.tracker, ready.shape
     done = 0
     for chunk in recording.chunks():
-        for one in chunk:
-            shape = tracker.step(one, shape).shape
+        for frame_set in chunk:
+            shape = tracker.step(frame_set, shape).shape
         done += len(chunk)
-        tell(done, 2 * recording.count)
+        progress(done, 2 * recording.count)
     tracker.reset()
     samples = _Samples(ready.shape)
     with IdleCollection() as garbage:
@@ -97,12 +97,12 @@ def bench_tracker(
             samples.add(tracker, chunk)
             garbage.idle(time.monotonic_ns())
             done += len(chunk)
-            tell(done, 2 * recording.count)
+            progress(done, 2 * recording.count)
     return samples.figures()
 
 
 class _Samples:
-    """What each step took."""
+    """Samples of the time and memory of each step."""
 
     def __init__(self, shape: BodyShape) -> None:
         self._shape = shape
@@ -123,7 +123,7 @@ class _Samples:
             clock.mark(REST)
             self._wall_ns.append(time.perf_counter_ns() - start_ns)
             self._cpu_ns.append(time.process_time_ns() - cpu_ns)
-            self._stages.append(clock.taken())
+            self._stages.append(clock.stages_ns())
             self._shape = track.shape
             self._tracked += track.body.pose is not None
         self._rss_bytes = max(self._rss_bytes, psutil.Process().memory_info().rss)

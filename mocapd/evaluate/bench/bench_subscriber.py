@@ -1,4 +1,4 @@
-"""A subscriber that keeps every frame with its arrival, and asks for the daemon's health."""
+"""A subscriber that stores every frame with its arrival time, and queries the daemon's health."""
 
 import json
 from contextlib import ExitStack
@@ -21,14 +21,14 @@ ANSWER_S = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """A frame and when it arrived, CLOCK_MONOTONIC [ns]."""
+    """A frame and its arrival time, CLOCK_MONOTONIC [ns]."""
 
     frame: SkeletonFrame
     arrival_ns: int
 
 
 class Subscriber:
-    """Used by one thread; frames arrive on Zenoh's, and are decoded when they are asked for."""
+    """Used by one thread; frames arrive on Zenoh's thread, and are decoded on access."""
 
     def __init__(self, endpoint: str, instance: str) -> None:
         config = client_config(endpoint, timeout_s=CONNECT_S)
@@ -46,22 +46,22 @@ class Subscriber:
         self._opened.close()
 
     def connect(self) -> bool:
-        """Try once, unless connected; whether it is."""
+        """Try to connect once, unless connected; returns whether it is connected."""
         if self._session is None:
             try:
                 self._session = self._opened.enter_context(zenoh.open(self._config))
             except zenoh.ZError:
                 return False
-            handler = zenoh.handlers.Callback(self._arrived, indirect=False)
+            handler = zenoh.handlers.Callback(self._on_sample, indirect=False)
             self._session.declare_subscriber(keys.skeleton(self._instance, 0), handler)
         return True
 
-    def _arrived(self, sample: zenoh.Sample) -> None:
+    def _on_sample(self, sample: zenoh.Sample) -> None:
         self._received.append((monotonic_ns(), sample.payload.to_bytes()))
 
     @property
     def count(self) -> int:
-        """Of frames so far."""
+        """Number of frames so far."""
         return len(self._received)
 
     def heard(self) -> list[Heard]:
@@ -69,9 +69,9 @@ class Subscriber:
         return [Heard(wire.decode(data), at_ns) for at_ns, data in tuple(self._received)]
 
     def health(self) -> Health:
-        """The daemon's last word on itself, at most a second old. Raises UnavailableError."""
+        """The daemon's newest health message, at most a second old. Raises UnavailableError."""
         if self._session is not None:
             for reply in self._session.get(keys.health(self._instance), timeout=ANSWER_S):
                 if reply.ok is not None:
                     return msgspec.msgpack.decode(reply.ok.payload.to_bytes(), type=Health)
-        raise UnavailableError("the daemon does not tell its health", "bench", "try `mocapd run`")
+        raise UnavailableError("the daemon sends no health message", "bench", "try `mocapd run`")

@@ -1,7 +1,7 @@
-"""The messages of Foxglove that a recording holds beside ours, so that the file opens there.
+"""The Foxglove messages that a recording holds in addition to ours, so that Foxglove opens the file.
 
-Names, fields and types are those of foxglove/foxglove-sdk, schemas/jsonschema; the words are ours. Foxglove knows
-a message by its schema's name and reads it by the schema in the file, in which nothing may be referred to.
+Names, fields and types are those of foxglove/foxglove-sdk, schemas/jsonschema; the descriptions are ours. Foxglove
+identifies a message by its schema's name and parses it by the schema in the file, which must have no references.
 """
 
 from typing import Annotated, Any
@@ -34,7 +34,7 @@ class Quaternion(msgspec.Struct, frozen=True, gc=False):
 
 
 class FrameTransform(msgspec.Struct, frozen=True, gc=False):
-    """parent_from_child: where a frame stands in another."""
+    """parent_from_child: the pose of a frame in another."""
 
     timestamp: Time
     parent_frame_id: str
@@ -50,7 +50,7 @@ class FrameTransforms(msgspec.Struct, frozen=True):
 
 
 class CameraCalibration(msgspec.Struct, frozen=True):
-    """A lens, without its place, which is a transform. R: none; P: as K, for the undistorted picture."""
+    """Intrinsics; the extrinsics are a transform. R: identity; P: K, for the undistorted picture."""
 
     timestamp: Time
     frame_id: str
@@ -93,7 +93,7 @@ class LinePrimitive(msgspec.Struct, frozen=True):
 
 
 class SceneEntity(msgspec.Struct, frozen=True):
-    """What is drawn in one frame of reference, and moves with it where it is locked."""
+    """Primitives drawn in one frame of reference; they move with it where it is locked."""
 
     timestamp: Time
     frame_id: str
@@ -129,17 +129,19 @@ FOXGLOVE: dict[str, type[msgspec.Struct]] = {
 def foxglove_schema(name: str) -> bytes:
     """The JSON schema of one of them, self-contained."""
     schema = msgspec.json.schema(FOXGLOVE[name])
-    inlined = _inlined(schema, schema.get("$defs", {}))
+    inlined = _inline_references(schema, schema.get("$defs", {}))
     inlined["title"] = name
     return msgspec.json.encode(inlined)
 
 
-def _inlined(schema: Any, definitions: dict[str, Any]) -> Any:
-    """With what is referred to in place of the reference."""
+def _inline_references(schema: Any, definitions: dict[str, Any]) -> Any:
+    """The schema with each reference replaced by its definition."""
     if isinstance(schema, list):
-        return [_inlined(one, definitions) for one in schema]
+        return [_inline_references(item, definitions) for item in schema]
     if not isinstance(schema, dict):
         return schema
     if "$ref" in schema:
-        return _inlined(definitions[schema["$ref"].rpartition("/")[2]], definitions)
-    return {key: _inlined(one, definitions) for key, one in schema.items() if key != "$defs"}
+        return _inline_references(definitions[schema["$ref"].rpartition("/")[2]], definitions)
+    return {
+        key: _inline_references(item, definitions) for key, item in schema.items() if key != "$defs"
+    }

@@ -1,8 +1,8 @@
 """From frames, rest skeleton and rig to Foxglove's messages. Pure.
 
-Frames of reference: `world` is ours (+Y up), `foxglove` above it has +Z up, as Foxglove shows things; a bone is
-`person0/leftHand`, a camera `camera/left`. Bones are drawn as lines that move with their frames, and so are told
-once. Numbers are rounded to a millimetre and a tenth of a degree: this is for eyes, the frames are beside it.
+Frames of reference: `world` is ours (+Y up), its parent `foxglove` has +Z up, as Foxglove displays; a bone is
+`person0/leftHand`, a camera `camera/left`. Bones are lines that move with their frames, and so are written once.
+Numbers are rounded to a millimetre and a tenth of a degree: they are for display, the file also has the exact frames.
 """
 
 from collections.abc import Sequence
@@ -42,7 +42,7 @@ def bone_frame(person: int, bone: str) -> str:
 
 
 def bone_transforms(frame: SkeletonFrame, rest: RestSkeleton) -> FrameTransforms | None:
-    """Where every bone stands in its parent's frame; None for a frame without them."""
+    """The pose of every bone in its parent's frame; None for a frame with other bones, or none."""
     if tuple(frame.joints) != rest.names:
         return None
     time = Time.of(frame.capture_unix_ns)
@@ -83,7 +83,7 @@ def _entity(time: Time, person: int, name: str, points: list[Vector3]) -> SceneE
 
 
 def fixed_transforms(calibration: CalibrationInfo | None, unix_ns: int) -> FrameTransforms:
-    """What does not move: the world as Foxglove shows it, and every camera in it."""
+    """The transforms that do not move: Foxglove's frame to the world, and every camera in it."""
     time = Time.of(unix_ns)
     transforms = [FrameTransform(time, ROOT, WORLD, Vector3(0.0, 0.0, 0.0), _UPRIGHT)]
     for camera in calibration.cameras if calibration is not None else ():
@@ -103,7 +103,7 @@ def fixed_transforms(calibration: CalibrationInfo | None, unix_ns: int) -> Frame
 
 
 def lens_messages(calibration: CalibrationInfo, unix_ns: int) -> dict[str, CameraCalibration]:
-    """Each camera's lens by its name."""
+    """Each camera's intrinsics by its name."""
     time = Time.of(unix_ns)
     return {
         camera.name: CameraCalibration(

@@ -1,9 +1,9 @@
 """A frame in an eighth of its bytes, for recordings: `mocapd.PackedSkeleton.v1`. Pure.
 
-Published frames take up to 460 MB an hour at 60 Hz however they are compressed, as their numbers are noise from the
-ninth digit on. Here positions are on a grid of 15 micrometres and rotations of 0.003 degrees, far below what any
-tracker knows, and uncertainties in tenths of a millimetre; the rotations relative to the parents follow from the
-others. Bytes of equal weight lie side by side, as the upper ones repeat and compress.
+Published frames take up to 460 MB an hour at 60 Hz and compress badly, because their last digits are noise. Packed
+positions are on a grid of 15 micrometres and rotations of 0.003 degrees, far below any tracker's error, and
+uncertainties in tenths of a millimetre. Rotations relative to the parents follow from the global ones. Bytes of equal
+weight are grouped, because the upper ones repeat and compress well.
 """
 
 from typing import Annotated
@@ -83,14 +83,14 @@ class PackedFrame(msgspec.Struct, frozen=True):
 
 
 def pack(frame: SkeletonFrame, names: tuple[str, ...]) -> PackedFrame | None:
-    """The frame with its joints in the order of `names`; None where it has others, or one is out of range."""
+    """The frame with its joints in the order of `names`; None where it has other joints, or one is out of range."""
     joints = frame.joints
     if joints and tuple(joints) != names:
         return None
     positions_m = np.array([joint.p for joint in joints.values()]).reshape(-1, 3)
     quats_xyzw = np.array([joint.r for joint in joints.values()]).reshape(-1, 4)
     confidence = np.array([joint.c for joint in joints.values()])
-    sane = np.abs(positions_m) < FARTHEST_M - 1.0  # no for NaN
+    sane = np.abs(positions_m) < FARTHEST_M - 1.0  # False for NaN
     if not (sane.all() and np.isfinite(quats_xyzw).all() and np.isfinite(confidence).all()):
         return None
     largest = np.argmax(np.abs(quats_xyzw), axis=1)
@@ -117,7 +117,7 @@ def pack(frame: SkeletonFrame, names: tuple[str, ...]) -> PackedFrame | None:
 
 
 def unpack(packed: PackedFrame, rest: RestSkeleton) -> SkeletonFrame:
-    """The frame again, within the grid. Raises InputError where it is not of this skeleton."""
+    """The frame, within the grid's error. Raises InputError where it has another skeleton."""
     joints: dict[str, Joint] = {}
     if packed.k:
         n = len(rest.names)
@@ -166,7 +166,7 @@ def encode_packed(packed: PackedFrame) -> bytes:
 
 
 def decode_packed(payload: bytes, encoding: str) -> PackedFrame:
-    """Back. Raises InputError."""
+    """The inverse of `encode_packed`. Raises InputError."""
     return decode_message(payload, encoding, PackedFrame, PACKED)
 
 
@@ -185,7 +185,7 @@ def _planes(values: Floats, n_bytes: int) -> bytes:
 
 
 def _whole(planes: bytes, n_bytes: int) -> Ints:
-    """The same numbers (J,3)."""
+    """The inverse of `_planes`: the numbers (J,3)."""
     data: Bytes = np.frombuffer(planes, dtype=np.uint8).reshape(n_bytes, 3, -1)
     shifts = 8 * np.arange(n_bytes)[:, None, None]
     unsigned = (data.astype(np.int64) << shifts).sum(axis=0)
@@ -195,9 +195,10 @@ def _whole(planes: bytes, n_bytes: int) -> Ints:
 
 
 def _packed_uncertainties(uncertainties_m: list[float | None]) -> bytes:
-    if all(one is None for one in uncertainties_m):
+    if all(sd_m is None for sd_m in uncertainties_m):
         return b""
-    steps = np.array([np.nan if one is None else one for one in uncertainties_m]) * _SD_STEPS_PER_M
+    steps = np.array([np.nan if sd_m is None else sd_m for sd_m in uncertainties_m])
+    steps *= _SD_STEPS_PER_M
     whole = np.where(
         np.isfinite(steps), np.clip(np.rint(steps), 0, _SD_UNKNOWN - 1), _SD_UNKNOWN
     ).astype("<u2")
@@ -205,13 +206,14 @@ def _packed_uncertainties(uncertainties_m: list[float | None]) -> bytes:
 
 
 def _uncertainties_m(planes: bytes, n: int) -> list[float | None]:
-    """Of n joints; recordings of before there were any have none."""
+    """Of n joints; all None in a recording of a version without uncertainties."""
     if not planes:
         return [None] * n
     if len(planes) != 2 * n:
         raise _other_skeleton()
     whole = np.ascontiguousarray(np.frombuffer(planes, dtype=np.uint8).reshape(2, n).T).view("<u2")
-    return [None if one == _SD_UNKNOWN else one / _SD_STEPS_PER_M for one in whole[:, 0].tolist()]
+    steps = whole[:, 0].tolist()
+    return [None if step == _SD_UNKNOWN else step / _SD_STEPS_PER_M for step in steps]
 
 
 def _quats(largest: Bytes, others: Ints) -> Floats:

@@ -25,12 +25,12 @@ _FAMILIES = tuple(name.rpartition(".")[0] + "." for name in _OURS)  # each witho
 
 _MOST_REFUSED = 5_000  # messages, before reading ends unless more were good
 
-_NOBODY = RestSkeleton("", 0, 0.0, (), (), ())  # until somebody is told
+_NO_SKELETON = RestSkeleton("", 0, 0.0, (), (), ())  # before the first rest skeleton
 
 
 @dataclass(slots=True)
 class _Counts:
-    """Of one reading. other: the schema of a newer or older mocapd that was met."""
+    """Of one pass through the file. other: the first schema of another version of mocapd."""
 
     frames: int = 0
     refused: int = 0
@@ -38,15 +38,15 @@ class _Counts:
 
 
 class RecordingReader:
-    """One file, read from its start as often as it is asked for."""
+    """One file; every call reads it from its start."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
 
     def everything(self) -> Iterator[Recorded]:
-        """Frames and states in the order in which they were recorded; at the end the log says what was missing.
+        """Frames and states in recorded order; at the end it logs what was damaged.
 
-        Raises InputError for what is no recording, or has no frame that this version reads.
+        Raises InputError where the file is no recording, or has no frame that this version reads.
         """
         file, counts = McapFile(self.path), _Counts()
         rests: dict[int, RestSkeleton] = {}
@@ -57,21 +57,21 @@ class RecordingReader:
                 counts.other = counts.other or item.schema
                 continue
             try:
-                found = _decoded(item, rests)
+                message = _decode(item, rests)
             except InputError:
                 counts.refused += 1
                 if counts.refused > max(_MOST_REFUSED, counts.frames):
                     file.ending = "it holds more damaged messages than frames"
                     break
                 continue
-            if isinstance(found, RestSkeleton):
-                rests[found.person] = found
-            counts.frames += isinstance(found, SkeletonFrame)
-            yield found
-        self._tell(file, counts)
+            if isinstance(message, RestSkeleton):
+                rests[message.person] = message
+            counts.frames += isinstance(message, SkeletonFrame)
+            yield message
+        self._report(file, counts)
 
-    def _tell(self, file: McapFile, counts: _Counts) -> None:
-        """What was wrong. Raises InputError where nothing could be read."""
+    def _report(self, file: McapFile, counts: _Counts) -> None:
+        """Log the damage. Raises InputError where no frame could be read."""
         place = str(self.path)
         if counts.frames == 0 and counts.other:
             raise InputError(
@@ -94,13 +94,12 @@ class RecordingReader:
             )
 
 
-def _decoded(message: McapMessage, rests: dict[int, RestSkeleton]) -> Recorded:
+def _decode(message: McapMessage, rests: dict[int, RestSkeleton]) -> Recorded:
     """Raises InputError."""
     mime = f"application/{message.encoding}"
     if message.schema == PACKED:
         packed = decode_packed(message.data, mime)
-        rest = rests.get(packed.person, _NOBODY)
-        return unpack(packed, rest)
+        return unpack(packed, rests.get(packed.person, _NO_SKELETON))
     if message.schema == SCHEMA:
         return decode(message.data, mime)
     if message.schema == REST_SKELETON:

@@ -1,8 +1,7 @@
-"""Writes one recording: frames, state, pictures and what is known, in chunks that reach the disk twice a second.
+"""Writes one recording: frames, state, pictures and calibration, in chunks that reach the disk twice a second.
 
-A process that is killed loses the chunk it was filling, half a second; a machine that loses its power what the
-system had not yet written, about FSYNC_S. The times of log are capture times, so that frames and pictures of one
-instant lie beside each other in every viewer.
+A killed process loses its unfinished chunk, half a second. A power cut loses what the system had not written, about
+FSYNC_NS. Log times are capture times, so that every viewer shows frames and pictures of one instant together.
 """
 
 import os
@@ -32,18 +31,18 @@ from mocapd.outputs.mcap.packed_frame import PACKED, PackedFrame, encode_packed,
 from mocapd.outputs.messages import CalibrationInfo, RestSkeleton, subject
 from mocapd.outputs.wire import SkeletonFrame
 
-FLUSH_NS = NS_PER_S // 2  # of a chunk at most: what a kill may cost
-FSYNC_NS = 5 * NS_PER_S  # between two waits for the disk itself
-CHUNK_BYTES = 4 << 20  # before it is compressed; pictures fill it sooner
+FLUSH_NS = NS_PER_S // 2  # longest time of a chunk: the loss at a kill
+FSYNC_NS = 5 * NS_PER_S  # between two fdatasync calls
+CHUNK_BYTES = 4 << 20  # before compression; pictures fill it before FLUSH_NS
 _RECORDING = kind_by_magic("a recording", b"\x89MCAP0\r\n")
 _JSONSCHEMA = "jsonschema"
 
 
 @dataclass(frozen=True, slots=True)
 class RecordingParams:
-    """exact: frames as the bytes that were published, 460 MB an hour at 60 Hz, instead of packed (packed_frame);
-    foxglove_hz: how often bones are told in Foxglove's words too [Hz], 0: never; private: nobody else may read it; force:
-    replace a file that is there."""
+    """exact: write frames as the published bytes, 460 MB an hour at 60 Hz, instead of packed (packed_frame);
+    foxglove_hz: rate of bone transforms for Foxglove [Hz], 0: none; private: only this user may read the file;
+    force: replace an existing file."""
 
     exact: bool = False
     foxglove_hz: float = 10.0
@@ -55,7 +54,7 @@ class RecordingWriter:
     """Used by one thread. Times are Unix time [ns], apart from those called `now_ns`, of any clock."""
 
     def __init__(self, path: Path, params: RecordingParams, now_ns: int) -> None:
-        """Make the file. Raises CannotCreateError; without force a recording that is there stays."""
+        """Create the file. Raises CannotCreateError, without `force` also for an existing recording."""
         self.path, self._params = path, params
         OutputFile(path, _RECORDING, params.force, option="").check_replaceable()
         mode = 0o600 if params.private else 0o666
@@ -78,15 +77,13 @@ class RecordingWriter:
             compression=CompressionType.ZSTD,
             index_types=IndexType.ALL,
         )
-        with (
-            self._writing()
-        ):  # at once, so that a kill within the first moment leaves a recording, if an empty one
+        with self._writing():  # at once, so that even an early kill leaves a valid, empty recording
             self._mcap.start("", f"mocapd {mocapd.__version__}")
             self._file.flush()
         self._channels: dict[tuple[str, str], int] = {}
         self._schemas: dict[str, int] = {}
         self._rests: dict[int, RestSkeleton] = {}
-        self._told: dict[tuple[str, str], RestSkeleton | CalibrationInfo] = {}
+        self._newest_states: dict[tuple[str, str], RestSkeleton | CalibrationInfo] = {}
         self._scene_due_ns: dict[int, int] = {}
         self._flushed_ns = self._synced_ns = now_ns
         self.frames = self.pictures = 0
@@ -98,10 +95,10 @@ class RecordingWriter:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    # -- what is written ---------------------------------------------------------------------------
+    # -- content -----------------------------------------------------------------------------------
 
     def frame(self, frame: SkeletonFrame, published: bytes | None = None, mime: str = "") -> None:
-        """One frame; `published`: its bytes on the wire, of this mime type, where they are to be kept."""
+        """Add one frame; `published`: its bytes on the wire, of this mime type, for exact recordings."""
         log_ns = frame.capture_unix_ns
         rest = self._rests.get(frame.person)
         names = rest.names if rest is not None else ()
@@ -120,7 +117,7 @@ class RecordingWriter:
             self._show(frame, rest)
 
     def _show(self, frame: SkeletonFrame, rest: RestSkeleton) -> None:
-        """The same for Foxglove, where it is due."""
+        """Add the frame's transforms for Foxglove, at foxglove_hz."""
         time_ns, due_ns = frame.capture_unix_ns, self._scene_due_ns.get(frame.person, 0)
         period_ns = round(NS_PER_S / self._params.foxglove_hz)
         if time_ns < due_ns and due_ns - time_ns <= period_ns:
@@ -132,12 +129,12 @@ class RecordingWriter:
             topic, name = f"/tf/person{frame.person}", foxglove_messages.TRANSFORMS
             self._add(topic, name, "json", msgspec.json.encode(transforms), time_ns)
 
-    def tell(self, message: RestSkeleton | CalibrationInfo, unix_ns: int) -> None:
-        """A rest skeleton or calibration; one that was told before alike is left out."""
+    def add_state(self, message: RestSkeleton | CalibrationInfo, unix_ns: int) -> None:
+        """Add a rest skeleton or calibration, unless it equals the last one."""
         about = subject(message)
-        if self._told.get(about) == message:
+        if self._newest_states.get(about) == message:
             return
-        self._told[about] = message
+        self._newest_states[about] = message
         data = msgspec.msgpack.encode(message)
         if isinstance(message, RestSkeleton):
             self._rests[message.person] = message
@@ -148,9 +145,9 @@ class RecordingWriter:
             self._add(topic, foxglove_messages.SCENE, "json", data, unix_ns)
         else:
             self._add("/mocapd/calibration", message.schema, "msgpack", data, unix_ns)
-            self._tell_cameras(message, unix_ns)
+            self._add_cameras(message, unix_ns)
 
-    def _tell_cameras(self, calibration: CalibrationInfo, unix_ns: int) -> None:
+    def _add_cameras(self, calibration: CalibrationInfo, unix_ns: int) -> None:
         fixed = foxglove_scene.fixed_transforms(calibration, unix_ns)
         data = msgspec.json.encode(fixed)
         self._add("/tf/fixed", foxglove_messages.TRANSFORMS, "json", data, unix_ns)
@@ -159,26 +156,26 @@ class RecordingWriter:
             self._add(topic, foxglove_messages.CAMERA_CALIBRATION, "json", data, unix_ns)
 
     def picture(self, camera: str, seq: int, unix_ns: int, jpeg: bytes) -> None:
-        """One picture as its camera delivered it, at the middle of its exposure."""
+        """Add one picture as its camera delivered it, at the middle of its exposure."""
         message = CompressedImage(Time.of(unix_ns), camera_frame(camera), jpeg)
         data = msgspec.json.encode(message)
         self._add(image_topic(camera), IMAGE, "json", data, unix_ns, seq)
         self.pictures += 1
 
-    def attach(self, known: RecordedKnown, unix_ns: int) -> None:
-        """What is known of cameras and wearer."""
-        for one in attachments_of(known):
-            self.attach_file(one, unix_ns)
+    def attach(self, setup: RecordedKnown, unix_ns: int) -> None:
+        """Attach the set-up of cameras and wearer."""
+        for file in attachments_of(setup):
+            self.attach_file(file, unix_ns)
 
     def attach_file(self, file: McapAttachment, unix_ns: int) -> None:
-        """A file as it is."""
+        """Attach a file unchanged."""
         with self._writing():
             self._mcap.add_attachment(unix_ns, unix_ns, file.name, file.media_type, file.data)
 
     # -- the file ----------------------------------------------------------------------------------
 
-    def beat(self, now_ns: int) -> None:
-        """Let the file have what was written, where it is time; call it often. Raises CannotCreateError."""
+    def flush_if_due(self, now_ns: int) -> None:
+        """Flush every FLUSH_NS, sync every FSYNC_NS; call it often. Raises CannotCreateError."""
         if now_ns - self._flushed_ns < FLUSH_NS:
             return
         self._flushed_ns = now_ns
@@ -190,7 +187,7 @@ class RecordingWriter:
                 os.fdatasync(self._descriptor)
 
     def close(self) -> None:
-        """With its index; may be called twice. Raises CannotCreateError."""
+        """Write the index and close; may be called twice. Raises CannotCreateError."""
         if self._file.closed:
             return
         with self._writing():
@@ -213,22 +210,22 @@ class RecordingWriter:
             self._mcap.add_message(channel, log_ns, data, log_ns, seq & 0xFFFFFFFF)
 
     def _schema(self, name: str) -> int:
-        known = self._schemas.get(name)
-        if known is None:
+        schema = self._schemas.get(name)
+        if schema is None:
             data = (
                 foxglove_messages.foxglove_schema(name)
                 if name in foxglove_messages.FOXGLOVE
                 else schema_of(name)
             )
-            known = self._schemas[name] = self._mcap.register_schema(name, _JSONSCHEMA, data)
-        return known
+            schema = self._schemas[name] = self._mcap.register_schema(name, _JSONSCHEMA, data)
+        return schema
 
     def _writing(self) -> "_Writing":
         return _Writing(self.path)
 
 
 def schema_of(name: str) -> bytes:
-    """The JSON schema of a message of ours, that of packed frames among them."""
+    """The JSON schema of one of our messages, packed frames included."""
     if name == PACKED:
         return msgspec.json.encode(msgspec.json.schema(PackedFrame))
     return schemas.schema_json(name)
@@ -236,7 +233,7 @@ def schema_of(name: str) -> bytes:
 
 @dataclass(frozen=True, slots=True)
 class _Writing:
-    """A disk that is full, or gone, by its name."""
+    """Turns an OSError, such as of a full disk, into a CannotCreateError with the path."""
 
     path: Path
 

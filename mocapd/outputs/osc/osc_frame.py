@@ -1,8 +1,8 @@
 """The native OSC address space: a skeleton frame as bundles.
 
 Every bundle begins with `/mocapd/v1/frame`; its joints follow as `/mocapd/v1/joint/<VRM name>`.
-A frame that does not fit one datagram is spread over several of nearly equal size. Whatever a
-frame's strings are, one joint and its header fit: longer strings are cut.
+A frame that does not fit one datagram is split into several of nearly equal size. Long strings
+are cut, so that a header and one joint always fit.
 """
 
 import struct
@@ -51,28 +51,28 @@ MAX_JOINT_BYTES = 64
 
 _frame_numbers = struct.Struct(">iiiiiIIf")  # the arguments before the strings
 _joint_numbers = struct.Struct(">13f")
-_UNKNOWN = -1.0  # no infinity: not every receiver survives one
+_UNKNOWN = -1.0  # not infinity: some receivers crash on it
 
 Shape = tuple[str, str, tuple[str, ...], str, tuple[str, ...]]
 
 
 def shape_of(frame: SkeletonFrame) -> Shape:
-    """What the layout of a frame's bundles depends on: its strings and its joints' names."""
+    """The key of a bundle layout: a frame's strings and its joints' names."""
     return frame.tracking, frame.tracker, frame.cameras, frame.instance, tuple(frame.joints)
 
 
 class FrameBundles:
-    """The bundles of all frames of one shape: laid out once, the numbers overwritten per frame."""
+    """The bundles for frames of one shape: built once, the numbers overwritten per frame."""
 
     def __init__(self, frame: SkeletonFrame, limit_bytes: int = osc.MAX_DATAGRAM_BYTES) -> None:
         header = osc.message(
             FRAME,
             FRAME_TYPES,
             *(0, 0, 0, 0, 0, 0, 0, 0.0),
-            osc.shortened(frame.tracking, MAX_TRACKING_BYTES),
-            osc.shortened(frame.tracker, MAX_TRACKER_BYTES),
-            osc.shortened(",".join(frame.cameras), MAX_CAMERAS_BYTES),
-            osc.shortened(frame.instance, MAX_INSTANCE_BYTES),
+            osc.truncate_utf8(frame.tracking, MAX_TRACKING_BYTES),
+            osc.truncate_utf8(frame.tracker, MAX_TRACKER_BYTES),
+            osc.truncate_utf8(",".join(frame.cameras), MAX_CAMERAS_BYTES),
+            osc.truncate_utf8(frame.instance, MAX_INSTANCE_BYTES),
         )
         joints = [_joint_message(name) for name in frame.joints]
         self._bundles: list[tuple[bytearray, int, tuple[int, ...]]] = []
@@ -80,7 +80,7 @@ class FrameBundles:
             data, (header_at, *joints_at) = osc.bundle([header, *run])
             self._bundles.append((data, header_at, tuple(joints_at)))
 
-    def filled(self, frame: SkeletonFrame) -> list[bytearray]:
+    def fill(self, frame: SkeletonFrame) -> list[bytearray]:
         """The datagrams of a frame of this shape; they are overwritten by the next call."""
         second, nanosecond = divmod(frame.capture_unix_ns, 1_000_000_000)
         latency_s = (frame.publish_monotonic_ns - frame.capture_monotonic_ns) * 1e-9
@@ -98,7 +98,7 @@ class FrameBundles:
                 nanosecond,
                 latency_s,
             )
-            # not strict: each bundle takes its own share of the joints, in order
+            # not strict: each bundle takes its share of the joints from the common iterator
             for offset, joint in zip(joints_at, joints, strict=False):
                 u = _UNKNOWN if joint.u is None else joint.u
                 _joint_numbers.pack_into(data, offset, *joint.p, *joint.r, *joint.l, joint.c, u)
@@ -106,7 +106,7 @@ class FrameBundles:
 
 
 def _joint_message(name: str) -> OscMessage:
-    address = JOINT + osc.shortened(name, MAX_JOINT_BYTES)
+    address = JOINT + osc.truncate_utf8(name, MAX_JOINT_BYTES)
     return osc.message(address, JOINT_TYPES, *(0.0,) * len(JOINT_TYPES))
 
 

@@ -14,7 +14,7 @@ from mocapd.outputs.osc.osc_frame import FrameBundles, Shape, shape_of
 from mocapd.outputs.wire import SkeletonFrame
 
 KEY = "osc.destinations"
-MAX_LAYOUTS = 32  # shapes of frames kept laid out; cameras and tracking states come and go
+MAX_LAYOUTS = 32  # cached bundle layouts; cameras and tracking states come and go
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Params:
 def parse_destination(text: str, key: str = KEY) -> tuple[str, int]:
     """`127.0.0.1:39541` or `[::1]:39541` to address and port. Raises ConfigError about this key.
 
-    A name would be looked up, which may block, and `localhost` may mean ::1, where few games listen.
+    Names are refused: a look-up may block, and `localhost` may mean ::1, where few games listen.
     """
     address, _, port = text.rpartition(":")
     address = address.removeprefix("[").removesuffix("]")
@@ -54,10 +54,10 @@ def _bad_destination(text: str, key: str) -> ConfigError:
 
 
 class Destination:
-    """One connected UDP socket. On this machine the system tells when nobody listens there.
+    """One connected UDP socket. On this machine the system reports a port without listener (ECONNREFUSED).
 
-    It tells late, after the datagram that nobody took. So a frame counts as sent until the next
-    call, and after two frames in a row without refusal somebody listens.
+    The report comes after the refused datagram. So a frame counts as sent until the next call, and two frames in a
+    row without refusal prove a listener.
     """
 
     def __init__(self, text: str, key: str = KEY) -> None:
@@ -81,15 +81,15 @@ class Destination:
 
     def send(self, datagrams: list[bytearray]) -> None:
         """Send the datagrams of one frame, or count it as refused. Never blocks, never raises."""
-        # reading the answer to the frame before also clears it, or this frame would pay for it
-        answer = self._socket.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
-        if answer:
+        # the error of the previous frame; reading clears it, else this frame's send would fail
+        error_number = self._socket.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
+        if error_number:
             self.sent -= 1
-            self._refuse(answer)
+            self._refuse(error_number)
         try:
             for datagram in datagrams:
                 self._socket.send(datagram)
-        except OSError as error:  # refused, no route, buffer full: all of them may pass
+        except OSError as error:  # refused, no route, buffer full: all may be temporary
             self._refuse(error.errno or 0)
             return
         self.sent += 1
@@ -102,7 +102,7 @@ class Destination:
 
     @property
     def is_heard(self) -> bool:
-        """Whether frames leave without refusal; proves a listener only on this machine."""
+        """True while frames leave without refusal; proves a listener only on this machine."""
         return self._in_a_row >= 2
 
     @property
@@ -117,7 +117,7 @@ class Destination:
 
 
 def status_of(destinations: Sequence[Destination]) -> SinkStatus:
-    """Of all of them together; `listeners` is -1 when only other machines are sent to."""
+    """The sum over all destinations; `listeners` is -1 when all are on other machines."""
     local = [d for d in destinations if d.is_local]
     return SinkStatus(
         sent=sum(d.sent for d in destinations),
@@ -128,7 +128,7 @@ def status_of(destinations: Sequence[Destination]) -> SinkStatus:
 
 
 class OscSink:
-    """Sends every frame to every destination. Nobody listening is counted, not an error."""
+    """Sends every frame to every destination. Frames without a listener are counted, not an error."""
 
     name = "osc"
 
@@ -150,12 +150,12 @@ class OscSink:
             if len(self._layouts) >= MAX_LAYOUTS:
                 self._layouts.clear()
             layout = self._layouts[shape] = FrameBundles(frame)
-        datagrams = layout.filled(frame)
+        datagrams = layout.fill(frame)
         for destination in self._destinations:
             destination.send(datagrams)
 
-    def tell(self, message: StateMessage) -> None:
-        """Nothing is sent: a datagram reaches nobody who comes later, and the frames say the rest."""
+    def send_state(self, message: StateMessage) -> None:
+        """Sends nothing: a datagram would not reach later receivers, and frames hold what they need."""
 
     def status(self) -> SinkStatus:
         """Frames over all destinations."""

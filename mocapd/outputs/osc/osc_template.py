@@ -19,17 +19,17 @@ _SIZE_BYTES = 4  # before each message
 Argument = int | float | str
 
 
-def shortened(text: str, max_bytes: int) -> str:
-    """The beginning of the text that takes at most so many bytes of UTF-8, without half characters.
+def truncate_utf8(text: str, max_bytes: int) -> str:
+    """The longest beginning of the text within `max_bytes` of UTF-8, cut between characters.
 
-    What UTF-8 or OSC cannot hold, a lone surrogate or NUL, becomes `?`.
+    A lone surrogate or NUL, which UTF-8 or OSC cannot hold, becomes `?`.
     """
     data = text.replace("\0", "?").encode(errors="replace")
     return data[:max_bytes].decode(errors="ignore")
 
 
 def message(address: str, types: str, *arguments: Argument) -> OscMessage:
-    """One message; `types` has one of `i f s` per argument, so that 1 is never sent for 1.0."""
+    """One message; `types` has one of `i f s` per argument, so that 1.0 is never sent as the integer 1."""
     builder = OscMessageBuilder(address)
     for kind, value in zip(types, arguments, strict=True):
         builder.add_arg(value, kind)
@@ -37,7 +37,7 @@ def message(address: str, types: str, *arguments: Argument) -> OscMessage:
 
 
 def numbers_offset(of: OscMessage) -> int:
-    """Where in the message its first number begins [bytes]; strings may precede it."""
+    """Offset of the message's first number [bytes]; strings may precede it."""
     _, at = get_string(of.dgram, 0)
     types, at = get_string(of.dgram, at)
     for kind in types[1:]:
@@ -53,9 +53,9 @@ def bundle_size(messages: Sequence[OscMessage]) -> int:
 
 
 def bundle(messages: Sequence[OscMessage]) -> tuple[bytearray, tuple[int, ...]]:
-    """One bundle, and where in it the numbers of each message begin [bytes].
+    """One bundle, and the offset of each message's numbers in it [bytes].
 
-    Receivers execute it immediately: a later time tag would let them hold it back.
+    Its time tag means "immediately": a later one would let receivers delay it.
     """
     builder = OscBundleBuilder(IMMEDIATELY)
     for element in messages:

@@ -1,4 +1,4 @@
-"""The pose of a person at a time that no frame is of yet: each bone turns on as it did, and keeps its length."""
+"""Extrapolates the pose of a person beyond the newest frame: each bone continues its rotation and keeps its length."""
 
 import math
 from collections.abc import Mapping
@@ -8,27 +8,27 @@ import msgspec
 
 from mocapd.body.bones import NAMES, PARENT_OF
 from mocapd.outputs import quaternions
-from mocapd.outputs.prediction.trend import WINDOW_S, step_shares
+from mocapd.outputs.prediction.extrapolation_weights import WINDOW_S, step_weights
 from mocapd.outputs.wire import Joint, Quaternion, SkeletonFrame, Vector
 
-MOST_AHEAD_S = 0.1  # farther than that nobody can tell [s]
+MOST_AHEAD_S = 0.1  # longest extrapolation [s]
 
 _NS_PER_S = 1_000_000_000
-_MOST_GAP_S = 0.25  # between frames; what was before a longer one says nothing of now [s]
-_MOST_LAG_NS = 50_000_000  # that is believed, of smoothing
-_MOST_FRAMES = 16  # that are remembered, however fast they come
-_SURE = 0.3  # confidence from which a joint's motion is believed whole; below, less of it
+_MOST_GAP_S = 0.25  # between frames; a longer gap clears the history [s]
+_MOST_LAG_NS = 50_000_000  # largest smoothing lag that is compensated
+_MOST_FRAMES = 16  # of the history, at any frame rate
+_SURE = 0.3  # confidence from which a joint's motion counts fully; below, in proportion
 
-_MOST_MOVE_M = 2.0  # from one frame to the next; who is farther away is another person, or nobody
+_MOST_MOVE_M = 2.0  # between two frames; a longer one is another person or an error
 
 _STILL: Vector = (0.0, 0.0, 0.0)
-_KNOWN = frozenset(NAMES)
+_OUR_BONES = frozenset(NAMES)
 
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """From a frame to the one after it. taken_s: how long it took; turns_rad: of each bone, about its parent's axes,
-    the world's where its parent is not sent; moves_m: of those."""
+    """The motion between two frames. taken_s: their interval; turns_rad: rotation vector of each bone in its parent's
+    axes, or the world's where its parent is not sent; moves_m: translation of the bones without parent."""
 
     taken_s: float
     turns_rad: Mapping[str, Vector]
@@ -36,18 +36,17 @@ class _Step:
 
 
 class PosePredictor:
-    """Takes the frames of one person as they come, and tells the pose at any time after the newest. One thread at
-    a time."""
+    """History of one person's frames, and the pose at any time after the newest. One thread at a time."""
 
     def __init__(self) -> None:
         self._newest: SkeletonFrame | None = None
         self._steps: list[_Step] = []  # newest first
         self._offsets_m: dict[str, Vector] | None = (
-            None  # of the newest: bone by bone, in the parent's axes
+            None  # of the newest frame: of each bone, in the parent's axes
         )
 
     def take(self, frame: SkeletonFrame) -> None:
-        """Learn the newest frame. One that is no newer, of another daemon, or after a gap begins anew; so does `lost`."""
+        """Add the newest frame. A frame that is not newer, of another daemon, `lost` or after a gap clears the history."""
         before = self._newest
         self._newest, self._offsets_m = frame, None
         step = None if before is None else _step(before, frame)
@@ -55,21 +54,20 @@ class PosePredictor:
             self._steps = []
             return
         self._steps.insert(0, step)
-        reach_s, kept = 0.0, 0
-        for one in self._steps[:_MOST_FRAMES]:
-            reach_s += one.taken_s
-            if kept and reach_s > WINDOW_S:
+        window_s, count = 0.0, 0
+        for step in self._steps[:_MOST_FRAMES]:
+            window_s += step.taken_s
+            if count and window_s > WINDOW_S:
                 break
-            kept += 1
-        del self._steps[kept:]
+            count += 1
+        del self._steps[count:]
 
     def at(self, unix_ns: int) -> SkeletonFrame | None:
-        """The pose at this time [Unix, ns], by the sender's clock: a frame whose capture time is that, and `predicted_ns` how
-        much of it lies ahead of the newest one's. None before the first frame.
+        """The frame with the pose at this time [Unix, ns, the sender's clock]; None before the first frame.
 
-        What smoothing has delayed is made up for. A time before the newest frame's gets that frame as it is, and so
-        does every time while `lost`; one that is farther ahead than anybody can tell (MOST_AHEAD_S) gets the pose of
-        that moment.
+        Its capture time is `unix_ns`, its `predicted_ns` the time since the newest frame. The smoothing lag is
+        compensated. Returns the newest frame unchanged for an earlier time and while `lost`. Extrapolates by
+        MOST_AHEAD_S at most.
         """
         newest = self._newest
         if newest is None or not newest.joints:
@@ -91,20 +89,20 @@ class PosePredictor:
         ages_s = [0.0]
         for step in self._steps:
             ages_s.append(ages_s[-1] + step.taken_s)
-        shares = step_shares(ages_s, ahead_s)
+        shares = step_weights(ages_s, ahead_s)
         turns = [(share, step.turns_rad) for share, step in zip(shares, self._steps, strict=True)]
         moves = [(share, step.moves_m) for share, step in zip(shares, self._steps, strict=True)]
         if self._offsets_m is None:
             self._offsets_m = _offsets(newest.joints)
-        found: dict[str, Joint] = {}
+        predicted: dict[str, Joint] = {}
         for name in _parents_first(newest.joints):
             joint = newest.joints[name]
             x, y, z = _sum(name, turns)
-            believed = min(1.0, max(0.0, joint.c / _SURE))
-            turn = quaternions.exp((x * believed, y * believed, z * believed))
+            gain = min(1.0, max(0.0, joint.c / _SURE))
+            turn = quaternions.exp((x * gain, y * gain, z * gain))
             parent = PARENT_OF.get(name)
-            if parent is not None and parent in found:
-                above = found[parent]
+            if parent is not None and parent in predicted:
+                above = predicted[parent]
                 local = quaternions.multiply(turn, joint.l)
                 r = quaternions.multiply(above.r, local)
                 start, (x, y, z) = above.p, quaternions.rotate(above.r, self._offsets_m[name])
@@ -114,19 +112,19 @@ class PosePredictor:
                 start, (x, y, z) = joint.p, _sum(name, moves)
             p = (start[0] + x, start[1] + y, start[2] + z)
             r, local = quaternions.canonical(r), quaternions.canonical(local)
-            found[name] = Joint(p, r, local, joint.c, joint.u)
-        return found
+            predicted[name] = Joint(p, r, local, joint.c, joint.u)
+        return predicted
 
 
 def _parents_first(joints: Mapping[str, Joint]) -> list[str]:
-    """The names; those of bones that we do not know come last."""
+    """The names, parents first; names that are not in our skeleton come last."""
     return [name for name in NAMES if name in joints] + [
-        name for name in joints if name not in _KNOWN
+        name for name in joints if name not in _OUR_BONES
     ]
 
 
 def _step(before: SkeletonFrame, after: SkeletonFrame) -> _Step | None:
-    """None where they do not follow each other."""
+    """None where the frames are not consecutive frames of one person."""
     taken_s = (after.capture_unix_ns - before.capture_unix_ns) / _NS_PER_S
     if not 0.0 < taken_s <= _MOST_GAP_S or not (before.joints and after.joints):
         return None
@@ -157,7 +155,7 @@ def _move(then: Vector, now: Vector) -> Vector:
 
 
 def _sum(name: str, shares: list[tuple[float, Mapping[str, Vector]]]) -> Vector:
-    """What becomes of one bone: a step that has it not is one in which it stood still."""
+    """Weighted sum of one bone's steps; a step without the bone counts as zero."""
     x = y = z = 0.0
     for share, of_bones in shares:
         step = of_bones.get(name)
@@ -167,11 +165,12 @@ def _sum(name: str, shares: list[tuple[float, Mapping[str, Vector]]]) -> Vector:
 
 
 def _offsets(joints: Mapping[str, Joint]) -> dict[str, Vector]:
-    """Of each bone whose parent is sent: from the parent's joint to its own, in the axes that turn with the parent [m]."""
-    found = {}
+    """Offset from the parent's joint in the parent's axes [m], for each bone whose parent is sent."""
+    offsets_m = {}
     for name, joint in joints.items():
         above = joints.get(PARENT_OF.get(name, ""))
         if above is not None:
             (x, y, z), (a, b, c) = joint.p, above.p
-            found[name] = quaternions.rotate(quaternions.inverse(above.r), (x - a, y - b, z - c))
-    return found
+            offset = (x - a, y - b, z - c)
+            offsets_m[name] = quaternions.rotate(quaternions.inverse(above.r), offset)
+    return offsets_m

@@ -1,4 +1,4 @@
-"""An output that is sent predicted poses at a rate of its own, faster than the cameras if need be."""
+"""Sends predicted poses to an output at a fixed rate, which may be higher than the cameras'."""
 
 import itertools
 import threading
@@ -12,15 +12,15 @@ from mocapd.outputs.prediction.pose_predictor import PosePredictor
 from mocapd.outputs.sink_thread import SinkThread
 from mocapd.outputs.wire import SkeletonFrame
 
-_SILENT_NS = NS_PER_S // 4  # without a frame nothing is sent, for nothing is known
+_SILENT_NS = NS_PER_S // 4  # time since the newest frame after which nothing is sent
 
 
 class PredictedSink:
-    """Wraps any sink. `send` and `tell` return at once; a thread of its own sends the pose of now, and of `ahead_s` later,
-    `rate_hz` times a second. `lost` is sent once, as it comes.
+    """Wraps any sink. `send` and `send_state` return at once; a thread sends the pose of `ahead_s` from now `rate_hz`
+    times a second. `lost` is sent once, on arrival.
 
-    Frames are numbered by themselves: there are more of them. An error of the inner sink ends the thread, and the
-    next `send` raises it.
+    Predicted frames have sequence numbers of their own. An error of the inner sink ends the thread, and the next
+    `send` raises it.
     """
 
     def __init__(self, sink: Sink, rate_hz: float, ahead_s: float) -> None:
@@ -41,22 +41,22 @@ class PredictedSink:
         self._thread.start()
 
     def send(self, frame: SkeletonFrame) -> None:
-        """Leave the frame for the thread. Raises what ended it: its named error or RuntimeError."""
+        """Queue the frame for the thread. Raises the error that ended the thread: a MocapdError or RuntimeError."""
         self._thread.check()
         with self._changed:
             if not self._closed:
                 self._frames.append(frame)
 
-    def tell(self, message: StateMessage) -> None:
-        """As the inner sink does."""
-        self._sink.tell(message)
+    def send_state(self, message: StateMessage) -> None:
+        """Pass it to the inner sink."""
+        self._sink.send_state(message)
 
     def status(self) -> SinkStatus:
-        """The inner sink's."""
+        """The inner sink's status."""
         return self._sink.status()
 
     def close(self) -> None:
-        """Let the thread go, then close the inner sink; may be called twice."""
+        """End the thread, then close the inner sink; may be called twice."""
         with self._changed:
             self._closed = True
             self._changed.notify()
@@ -74,11 +74,11 @@ class PredictedSink:
             now_ns = monotonic_ns()
             if newest is not None and (newest.joints or frames):
                 self._send(predictor, newest, now_ns)
-            # after a pause the beat goes on from now, rather than catching up
+            # after a pause the schedule restarts from now, without catching up
             due_ns = max(due_ns + self._period_ns, now_ns)
 
     def _came_until(self, due_ns: int) -> list[SkeletonFrame] | None:
-        """The frames that came by then; None when it is closed."""
+        """The frames that arrive until then; None once closed."""
         with self._changed:
             wait_s = max(0.0, seconds(due_ns - monotonic_ns()))
             if self._changed.wait_for(lambda: self._closed, wait_s):

@@ -1,4 +1,4 @@
-"""The bones that a VMC receiver is told of: the wearer's own, or those of an avatar's file."""
+"""The bones sent to a VMC receiver: the wearer's, or those of an avatar's file."""
 
 from dataclasses import dataclass, replace
 
@@ -20,11 +20,11 @@ _SAME_AXES: tuple[Row, Row, Row] = (
 class Avatar:
     """Bones by VRM 1.0 name, the hips first, parents before their children; in the T-pose, axes of the world.
 
-    parents: of each the nearest bone above, -1 for the hips. offsets_m: from the node directly above, in that node's
-    axes [m]; of the hips nothing is read. rest_xyzw: global rotation of each bone; from_above_xyzw: the inverse of
-    that of the node directly above, which in a file need not be a bone. hips_from_world: rows of the transform into the
-    axes of the node above the hips. hips_height_m: of the hips above the floor. is_straight: whether all those rotations
-    are none.
+    parents: index of the nearest bone above, -1 for the hips. offsets_m: from the parent node, in that node's axes [m];
+    unused for the hips. rest_xyzw: global rotation of each bone; from_above_xyzw: the inverse of the parent node's
+    global rotation (in a file the parent node need not be a bone). hips_from_world: rows of the transform from the world
+    into the axes of the node above the hips. hips_height_m: of the hips above the floor. is_straight: all those
+    rotations are the identity.
     """
 
     names: tuple[str, ...]
@@ -38,7 +38,7 @@ class Avatar:
 
 
 def wearer_avatar(rest: RestSkeleton) -> Avatar:
-    """The wearer's own bones: straight in the T-pose, nothing between them."""
+    """The wearer's bones, without rotations in the T-pose."""
     straight = (IDENTITY_XYZW,) * len(rest.names)
     return Avatar(
         rest.names,
@@ -52,14 +52,16 @@ def wearer_avatar(rest: RestSkeleton) -> Avatar:
     )
 
 
-def mirrored(avatar: Avatar) -> Avatar:
-    """Bones as long as those of the other side, as the person in a mirror has them; for straight bones."""
+def mirror_avatar(avatar: Avatar) -> Avatar:
+    """Swaps the bone lengths of left and right, as in a mirror; for straight bones."""
     place = {name: k for k, name in enumerate(avatar.names)}
     others = [place.get(other_side(name), k) for k, name in enumerate(avatar.names)]
-    return replace(avatar, offsets_m=tuple(map(reflected, (avatar.offsets_m[k] for k in others))))
+    return replace(
+        avatar, offsets_m=tuple(map(reflect_position, (avatar.offsets_m[k] for k in others)))
+    )
 
 
-def reflected(position_m: Vector) -> Vector:
-    """At the plane x = 0."""
+def reflect_position(position_m: Vector) -> Vector:
+    """The mirror image at the plane x = 0."""
     x, y, z = position_m
     return -x, y, z

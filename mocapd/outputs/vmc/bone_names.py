@@ -1,4 +1,4 @@
-"""VRM 1.0 bone names in Unity's spelling, the other side of each, and which of them are leaves.
+"""VRM 1.0 bone names: Unity's spelling, the opposite side, and leaf bones.
 
 VMC names bones as Unity's HumanBodyBones, where case matters. VRM 0.x counts the thumb as Unity
 does, VRM 1.0 begins it with the metacarpal. Sources: VMC protocol specification;
@@ -35,8 +35,8 @@ def other_side(bone: str) -> str:
 
 
 def is_leaf(bone: str) -> bool:
-    """Whether it is left out while nothing is known of it: toes, fingers, eyes and jaw.
+    """True for toes, fingers, eyes and jaw, which are not sent while untracked.
 
-    A receiver leaves such a bone as its avatar has it, and would crush it were it told to be straight.
+    A receiver leaves a missing bone in its avatar's own pose; a rotation of zero would deform it.
     """
     return bone == "jaw" or bone.endswith(("Toes", "Eye")) or any(f in bone for f in _FINGERS)

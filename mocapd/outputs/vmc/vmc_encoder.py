@@ -3,30 +3,36 @@
 from dataclasses import dataclass
 
 from mocapd.outputs.messages import RestSkeleton
-from mocapd.outputs.vmc.avatar import Avatar, mirrored, reflected, wearer_avatar
+from mocapd.outputs.vmc.avatar import Avatar, mirror_avatar, reflect_position, wearer_avatar
 from mocapd.outputs.vmc.bone_names import is_leaf, other_side
-from mocapd.outputs.vmc.placing import Placing, headed, local_rotations, placed, reflected_turn
 from mocapd.outputs.vmc.vmc_packets import Bundling, VmcPackets
+from mocapd.outputs.vmc.vmc_space import (
+    VmcHeading,
+    apply_heading,
+    local_rotations,
+    reflect_rotation,
+    vmc_poses,
+)
 from mocapd.outputs.wire import Joint, Quaternion, SkeletonFrame, Vector
 
-LEAF_CONFIDENCE = 0.05  # below which a leaf is taken to be untracked
-MAX_LAYOUTS = 32  # kept laid out; leaves come and go
+LEAF_CONFIDENCE = 0.05  # below, a leaf counts as untracked
+MAX_LAYOUTS = 32  # cached packet layouts; leaves come and go
 _UNEVEN = 1e-3  # by how much the squared length of a quaternion may differ from 1
-_MOST = 1e6  # of any number that is sent; float32 holds far more, an avatar does not
+_MOST = 1e6  # largest number that is sent; float32 holds far more
 _HIPS = "hips"
 
 
 class VmcEncoder:
     """avatar: of a file, None for the wearer's own bones.
 
-    Until a first pose is known, `OK` says that nothing is loaded, and no bone is sent. When the person is lost the last
-    pose stays: a receiver that is told of no bones, or of some only, collapses its avatar.
+    Before the first pose, `OK` reports `not loaded`, and no bone is sent. When the person is lost the last pose stays:
+    without some of its bones a receiver collapses its avatar.
     """
 
     def __init__(
-        self, placing: Placing, mirror: bool, bundling: Bundling, avatar: Avatar | None
+        self, heading: VmcHeading, mirror: bool, bundling: Bundling, avatar: Avatar | None
     ) -> None:
-        self._placing, self._mirror, self._bundling = placing, mirror, bundling
+        self._heading, self._mirror, self._bundling = heading, mirror, bundling
         self._file_avatar = avatar
         self._body: _Body | None = None
         self._layouts: dict[tuple[int, ...], tuple[VmcPackets, tuple[int, ...]]] = {}
@@ -43,15 +49,15 @@ class VmcEncoder:
     ) -> list[bytearray]:
         """The datagrams of the frame; they are overwritten by the next call.
 
-        rest: whose body the frame is of, None while nobody told; one without hips, or with hips on the floor, is none.
-        calibration: VMC's state, 3 when calibrated. Tracking is said to be good in frames with evidence alone.
+        rest: the person's skeleton, None while it is unknown; a skeleton without hips above the floor counts as None.
+        calibration: VMC's state, 3 when calibrated. VMC's tracking state is good only in `live` frames.
         """
         pose = rest is not None and self._pose(frame, rest)
         self._packets.say(self._is_posed, calibration, pose and frame.tracking == "live", time_s)
         return self._packets.datagrams
 
     def _pose(self, frame: SkeletonFrame, rest: RestSkeleton) -> bool:
-        """Whether the frame has a pose that can be sent; then it is what the datagrams say."""
+        """Write the frame's pose into the datagrams; False where the frame has no valid pose."""
         if _HIPS not in frame.joints or not _has_hips(rest):
             return False
         body = self._body
@@ -62,19 +68,19 @@ class VmcEncoder:
             return False
         joints = [frame.joints.get(name) for name in body.sources]
         hips_m = frame.joints[_HIPS].p
-        # the wearer's own bones turn as the frame says already; the products are for an avatar with others
-        known = [one.l for one in joints if one is not None] if body.is_own else []
-        is_told = len(known) == len(joints)
-        turns_xyzw = known if is_told else _turned(joints, body.avatar.parents)
+        # for the wearer's own bones the frame has the local rotations already
+        sent = [joint.l for joint in joints if joint is not None] if body.is_own else []
+        has_locals = len(sent) == len(joints)
+        turns_xyzw = sent if has_locals else _global_rotations(joints, body.avatar.parents)
         if not all(map(_is_rotation, turns_xyzw)):
             return False
         if self._mirror:
-            hips_m, turns_xyzw = reflected(hips_m), [*map(reflected_turn, turns_xyzw)]
-        if is_told:
-            locals_xyzw = headed(self._placing, turns_xyzw)
+            hips_m, turns_xyzw = reflect_position(hips_m), [*map(reflect_rotation, turns_xyzw)]
+        if has_locals:
+            locals_xyzw = apply_heading(self._heading, turns_xyzw)
         else:
-            locals_xyzw = local_rotations(body.avatar, self._placing, turns_xyzw)
-        numbers = placed(body.avatar, self._placing, hips_m, locals_xyzw, body.scale)
+            locals_xyzw = local_rotations(body.avatar, self._heading, turns_xyzw)
+        numbers = vmc_poses(body.avatar, self._heading, hips_m, locals_xyzw, body.scale)
         if not all(_is_near(row[:3]) for row in numbers[:2]):  # root and hips; the others stay
             return False
         packets, rows = self._layout(
@@ -87,7 +93,7 @@ class VmcEncoder:
     def _layout(
         self, body: "_Body", left_out: tuple[int, ...]
     ) -> tuple[VmcPackets, tuple[int, ...]]:
-        """The datagrams without these bones, and which of all numbers are in them."""
+        """The datagrams without these bones, and the indices of the numbers in them."""
         layout = self._layouts.get(left_out)
         if layout is None:
             if len(self._layouts) >= MAX_LAYOUTS:
@@ -101,8 +107,8 @@ class VmcEncoder:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Body:
-    """Whose bones are sent. is_own: the wearer's, mirrored perhaps; is_sane: none is as far away as no bone is;
-    sources: of each bone the joint of the frame that turns it; leaves: places of those that are."""
+    """The body that is sent. is_own: it has the wearer's bones, perhaps mirrored; is_sane: all offsets are in range;
+    sources: for each bone the joint of the frame that rotates it; leaves: indices of the leaf bones."""
 
     rest: RestSkeleton
     avatar: Avatar
@@ -115,7 +121,7 @@ class _Body:
 
 def _body(rest: RestSkeleton, file_avatar: Avatar | None, mirror: bool) -> _Body:
     own = wearer_avatar(rest)
-    avatar = file_avatar or (mirrored(own) if mirror else own)
+    avatar = file_avatar or (mirror_avatar(own) if mirror else own)
     return _Body(
         rest,
         avatar,
@@ -128,7 +134,7 @@ def _body(rest: RestSkeleton, file_avatar: Avatar | None, mirror: bool) -> _Body
 
 
 def _has_hips(rest: RestSkeleton) -> bool:
-    """Above the floor, and first of the bones."""
+    """True if the first bone is the hips, above the floor."""
     return rest.names[:1] == (_HIPS,) and rest.offsets_m[0][1] > 0.0
 
 
@@ -136,8 +142,8 @@ def _is_tracked(joint: Joint | None) -> bool:
     return joint is not None and joint.c >= LEAF_CONFIDENCE
 
 
-def _turned(joints: list[Joint | None], parents: tuple[int, ...]) -> list[Quaternion]:
-    """Global rotations; a bone that the frame does not know is turned as the one above it."""
+def _global_rotations(joints: list[Joint | None], parents: tuple[int, ...]) -> list[Quaternion]:
+    """Global rotations; a bone that is missing in the frame rotates with its parent."""
     rows: list[Quaternion] = []
     for joint, parent in zip(joints, parents, strict=True):
         rows.append(joint.r if joint is not None else rows[parent])
@@ -145,11 +151,11 @@ def _turned(joints: list[Joint | None], parents: tuple[int, ...]) -> list[Quater
 
 
 def _is_near(position_m: Vector) -> bool:
-    """Not NaN either."""
+    """False also for NaN."""
     return all(abs(along_m) <= _MOST for along_m in position_m)
 
 
 def _is_rotation(xyzw: Quaternion) -> bool:
-    """Not NaN either."""
+    """False also for NaN."""
     x, y, z, w = xyzw
     return abs(x * x + y * y + z * z + w * w - 1.0) <= _UNEVEN

@@ -1,8 +1,8 @@
-"""The messages of one VMC frame, laid out once; per frame only numbers are overwritten.
+"""The messages of one VMC frame, built once; per frame only numbers are overwritten.
 
 Performer to Marionette, protocol V2.7 (protocol.vmc.info/english): `/VMC/Ext/OK iiii`,
 `/VMC/Ext/T f`, `/VMC/Ext/Root/Pos sfffffff`, `/VMC/Ext/Bone/Pos sfffffff`. Types are i, f and s
-only and argument lists complete: several receivers do not survive others.
+only and argument lists complete: several receivers crash on others.
 """
 
 import struct
@@ -13,7 +13,7 @@ from pythonosc.osc_message import OscMessage
 
 from mocapd.outputs.osc import osc_template as osc
 from mocapd.outputs.vmc.bone_names import unity_name
-from mocapd.outputs.vmc.placing import Numbers
+from mocapd.outputs.vmc.vmc_space import Numbers
 
 Bundling = Literal["two", "one", "off"]
 
@@ -26,14 +26,14 @@ _pose_numbers = struct.Struct(">7f")
 _time_number = struct.Struct(">f")
 _LEGS = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 
-_Place = tuple[bytearray, int]  # where in which datagram a message's numbers begin
+_Place = tuple[bytearray, int]  # a datagram, and the offset of a message's numbers in it
 
 
 class VmcPackets:
-    """The datagrams for these bones, by VRM 1.0 name; without any, OK and T alone.
+    """The datagrams for these bones, by VRM 1.0 name; without bones, OK and T alone.
 
-    two: bundles of at most 1472 bytes, trunk and arms before legs: of 22 bones it makes two; one: a single bundle,
-    whatever its size; off: a datagram for each message.
+    two: bundles of at most 1472 bytes, trunk and arms before legs: two for 22 bones; one: a single bundle of any size;
+    off: a datagram for each message.
     """
 
     def __init__(self, bones: Sequence[str], bundling: Bundling) -> None:
@@ -77,14 +77,14 @@ def _pose_message(address: str, name: str) -> OscMessage:
 def _runs(
     groups: Sequence[list[str]], messages: dict[str, OscMessage], bundling: Bundling
 ) -> Iterator[list[str]]:
-    """What goes into one datagram each, by name."""
+    """The messages of each datagram, by name."""
     if bundling == "one":
         yield [name for group in groups for name in group]
         return
     for group in groups:
         run: list[str] = []
         for name in group:
-            size = osc.bundle_size([messages[one] for one in (*run, name)])
+            size = osc.bundle_size([messages[member] for member in (*run, name)])
             if run and (bundling == "off" or size > osc.MAX_DATAGRAM_BYTES):
                 yield run
                 run = []

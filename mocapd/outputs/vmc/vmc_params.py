@@ -1,4 +1,4 @@
-"""What may be set of the VMC output."""
+"""The settings of the VMC output."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +12,7 @@ from mocapd.outputs.vmc.vrm_file import read_vrm
 
 KEY = "vmc.destinations"
 
-# kept as text; one that is relative is meant from the file that it is configured in
+# stored as text; a relative path starts at the configuration file
 _PathText = Annotated[str, Meta(extra={"is_path": True})]
 
 
@@ -24,11 +24,11 @@ class Params:
     port_step: VMC knows no persons, so person n is sent to the port that is so many times n higher
     root: which carries the way over the floor: `hips`, as every receiver reads them, or `root`
     turn: 180 for a receiver that shows the avatar from behind [degrees]
-    yaw_deg: turn it besides, counter-clockwise seen from above [degrees]
+    yaw_deg: additional turn, counter-clockwise from above [degrees]
     mirror: as in a mirror: the person's left is the avatar's right
     bundle: two, of at most 1472 bytes each; one, which VSeeFace wants; or off, for receivers that read no bundles
     rate_hz: at most so many frames per second [Hz]
-    vrm: a `.vrm` file whose bones' lengths are sent in place of the wearer's
+    vrm: a `.vrm` file; its bone lengths are sent instead of the wearer's
     """
 
     destinations: tuple[str, ...] = ("127.0.0.1:39539",)

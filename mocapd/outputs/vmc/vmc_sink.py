@@ -11,23 +11,22 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CalibrationInfo, RestSkeleton, StateMessage
 from mocapd.outputs.osc.osc_sink import Destination, parse_destination, status_of
 from mocapd.outputs.rate_cap import RateCap
-from mocapd.outputs.vmc.placing import placing
 from mocapd.outputs.vmc.vmc_encoder import VmcEncoder
 from mocapd.outputs.vmc.vmc_params import KEY, Params
+from mocapd.outputs.vmc.vmc_space import vmc_heading
 from mocapd.outputs.vmc.vrm_file import read_vrm
 from mocapd.outputs.wire import SkeletonFrame
 
 UNCALIBRATED, CALIBRATED = 0, 3
-# T begins anew after 18 hours: a float32 of more seconds than these has steps of 1/128 s, and would soon
-# not tell two frames apart
+# T restarts after 18 hours: a float32 of more seconds has steps of 1/128 s and could not separate two frames
 T_PERIOD_S = 65536.0
-MOST_PERSONS = 16  # each has sockets and layouts of their own
+MOST_PERSONS = 16  # each has its own sockets and layouts
 _MOST_PORT = 65535
 
 
 @dataclass(slots=True)
 class _Performer:
-    """What one person has to themselves. destinations: as many as could be opened."""
+    """State of one person. destinations: those that could be opened."""
 
     encoder: VmcEncoder
     cap: RateCap
@@ -37,13 +36,13 @@ class _Performer:
 class VmcSink:
     """A performer of VMC for each person, all of them with the same settings.
 
-    Each destination has one socket from `open` to `close`, as a receiver may take a new port for another sender.
+    Each destination has one socket from `open` to `close`: a receiver may take a new port for another sender.
     """
 
     name = "vmc"
 
     def __init__(self, params: Params, clock: Callable[[], int] = monotonic_ns) -> None:
-        """Raises InputError for a `.vrm` file that does not do."""
+        """Raises InputError for an unusable `.vrm` file."""
         self._params, self._clock = params, clock
         self._avatar = read_vrm(Path(params.vrm)) if params.vrm else None
         self._rests: dict[int, RestSkeleton] = {}
@@ -61,7 +60,7 @@ class VmcSink:
         performer.destinations = tuple(Destination(text, KEY) for text in self._params.destinations)
 
     def send(self, frame: SkeletonFrame) -> None:
-        """Send one frame, unless it comes sooner than `rate_hz` says."""
+        """Send one frame, at most `rate_hz` of them."""
         if not self._is_open or not 0 <= frame.person < MOST_PERSONS:
             return
         performer = self._performers.get(frame.person)
@@ -79,8 +78,8 @@ class VmcSink:
         for destination in performer.destinations:
             destination.send(datagrams)
 
-    def tell(self, message: StateMessage) -> None:
-        """Take note of whose bones are sent, and whether the cameras are calibrated."""
+    def send_state(self, message: StateMessage) -> None:
+        """Store the person's skeleton, and whether the cameras are calibrated."""
         match message:
             case RestSkeleton(person=person):
                 self._rests[person] = message
@@ -92,7 +91,7 @@ class VmcSink:
     def status(self) -> SinkStatus:
         """Frames over all persons' destinations."""
         performers = tuple(self._performers.values())
-        return status_of([one for performer in performers for one in performer.destinations])
+        return status_of([destination for p in performers for destination in p.destinations])
 
     def close(self) -> None:
         """Close the sockets; may be called twice."""
@@ -104,12 +103,12 @@ class VmcSink:
 
     def _performer(self) -> _Performer:
         params = self._params
-        where = placing(params.turn, params.yaw_deg, by_root=params.root == "root")
+        where = vmc_heading(params.turn, params.yaw_deg, by_root=params.root == "root")
         encoder = VmcEncoder(where, params.mirror, params.bundle, self._avatar)
         return _Performer(encoder, RateCap(params.rate_hz))
 
     def _joining(self, person: int) -> _Performer:
-        """A person after the first, each on ports of their own. One without a port or a route is not sent."""
+        """A performer for a further person, on its own ports. Without a port or a route it sends nothing."""
         performer = self._performer()
         for text in self._params.destinations:
             address, port = parse_destination(text, KEY)

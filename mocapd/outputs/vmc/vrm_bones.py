@@ -1,4 +1,4 @@
-"""From the nodes of a glTF model, and which of them are bones, to an avatar. Pure; everything is checked."""
+"""Makes an avatar of a glTF model's nodes and the indices of its bones. Pure; checks everything."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated
@@ -13,7 +13,7 @@ from mocapd.outputs.vmc.avatar import Avatar
 from mocapd.outputs.wire import Quaternion, Vector
 from mocapd.types import Floats
 
-# Without which there is no humanoid, in both versions
+# Required bones of a humanoid, in both versions
 REQUIRED = (
     "hips", "spine", "head",
     *(
@@ -24,8 +24,8 @@ REQUIRED = (
 )  # fmt: skip
 
 _MOST = 1e4  # of any number of a node; in metres, and scaled by 100 at the most
-_MOST_ABOVE = 500  # nodes of one bone; real avatars have some dozens
-_LEAST_HEIGHT_M = 0.05  # of hips above the floor; travel is scaled by it
+_MOST_ABOVE = 500  # nodes above one bone; real avatars have some dozens
+_LEAST_HEIGHT_M = 0.05  # of hips above the floor; translations are scaled by it
 _STRAIGHT = 1.0 - 1e-12  # cosine of half an angle of a millionth [rad]
 _ABOUT_XYZ = np.array([-1.0, 1.0, -1.0])  # half a turn about +Y
 _ABOUT_XYZW = np.array([-1.0, 1.0, -1.0, 1.0])
@@ -38,14 +38,14 @@ class VrmNode(msgspec.Struct, frozen=True):
     """A node of glTF: translation, rotation (xyzw) and scale, or all three as a matrix by columns."""
 
     children: tuple[int, ...] = ()
-    # of any size: what does not do is told with the node's number
+    # no limits here: `_pose` checks them
     translation: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rotation: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     matrix: _Matrix | None = None
 
     def faced_about(self) -> "VrmNode":
-        """The same in a world that is turned by half a turn about +Y."""
+        """The node in a world rotated by half a turn about +Y."""
         matrix = None
         if self.matrix is not None:
             own = np.array(self.matrix).reshape(4, 4)
@@ -58,8 +58,7 @@ class VrmNode(msgspec.Struct, frozen=True):
 def avatar_of_nodes(
     nodes: Sequence[VrmNode], bones: Mapping[str, int], faces_back: bool = False
 ) -> Avatar:
-    """The avatar whose bones, by VRM 1.0 name, are these nodes; faces_back: towards -Z. Raises MalformedError saying what
-    does not fit."""
+    """The avatar whose bones, by VRM 1.0 name, are these nodes; faces_back: it faces -Z. Raises MalformedError."""
     missing = [name for name in REQUIRED if name not in bones]
     if missing:
         raise MalformedError(f"its humanoid has no {', '.join(missing)}")
@@ -71,25 +70,29 @@ def avatar_of_nodes(
     above = _parents(nodes)
     bone_of = {node: name for name, node in bones.items()}
     lines = {name: _line(above, node) for name, node in bones.items()}
-    # the longer the line to the top, the later: parents before their children
+    # sorted by depth: parents before their children
     names = tuple(sorted(bones, key=lambda name: (name != "hips", len(lines[name]))))
     place = {name: k for k, name in enumerate(names)}
     parents = []
     for name in names:
-        found = next((bone_of[node] for node in lines[name][1:] if node in bone_of), None)
-        if (found is None) != (name == "hips"):
+        parent = next((bone_of[node] for node in lines[name][1:] if node in bone_of), None)
+        if (parent is None) != (name == "hips"):
             raise MalformedError(f"its bone {name[:40]!r} is not below its hips")
-        parents.append(-1 if found is None else place[found])
+        parents.append(-1 if parent is None else place[parent])
     used = {node for line in lines.values() for node in line}
     poses = {node: _pose(nodes[node].faced_about() if faces_back else nodes[node]) for node in used}
-    hips_above = _composed([poses[node] for node in lines["hips"][1:]])
+    hips_above = _compose_matrices([poses[node] for node in lines["hips"][1:]])
     hips_m = (hips_above @ poses[bones["hips"]][0])[:3, 3]
     if hips_m[1] < _LEAST_HEIGHT_M:
         raise MalformedError(f"its hips are {hips_m[1]:.2f} m above the floor")
     if abs(np.linalg.det(hips_above)) < 1e-12:
         raise MalformedError("a node above its hips is scaled to nothing")
-    rest_xyzw = np.array([_turned([poses[node] for node in lines[name]]) for name in names])
-    above_xyzw = np.array([_turned([poses[node] for node in lines[name][1:]]) for name in names])
+    rest_xyzw = np.array(
+        [_compose_rotations([poses[node] for node in lines[name]]) for name in names]
+    )
+    above_xyzw = np.array(
+        [_compose_rotations([poses[node] for node in lines[name][1:]]) for name in names]
+    )
     world_above = np.linalg.inv(hips_above)
     return Avatar(
         names,
@@ -115,23 +118,23 @@ def _parents(nodes: Sequence[VrmNode]) -> dict[int, int]:
 
 
 def _line(above: Mapping[int, int], node: int) -> list[int]:
-    """The node, the one above it, and so on to the top."""
+    """The path from the node to the root."""
     line = [node]
-    seen = {node}
+    visited = {node}
     while line[-1] in above:
         line.append(above[line[-1]])
-        if line[-1] in seen:
+        if line[-1] in visited:
             raise MalformedError(f"its node {node} is below itself")
         if len(line) > _MOST_ABOVE:
             raise MalformedError(f"its node {node} has more than {_MOST_ABOVE} nodes above it")
-        seen.add(line[-1])
+        visited.add(line[-1])
     return line
 
 
 def _pose(node: VrmNode) -> tuple[Floats, Floats]:
-    """Relative to the node above: the matrix (4,4) and its rotation (4,)."""
+    """Transform (4,4) relative to the parent node, and its rotation (4,)."""
     numbers = np.array([*node.translation, *node.rotation, *node.scale, *(node.matrix or ())])
-    if not (np.abs(numbers) <= _MOST).all():  # NaN neither
+    if not (np.abs(numbers) <= _MOST).all():  # also for NaN
         raise MalformedError("a number of its nodes is too large or none")
     matrix = np.eye(4)
     if node.matrix is None:
@@ -148,16 +151,16 @@ def _pose(node: VrmNode) -> tuple[Floats, Floats]:
     return matrix, rotations.from_matrix(matrix[:3, :3] / scale)
 
 
-def _composed(line: Sequence[tuple[Floats, Floats]]) -> Floats:
-    """Of a line from below to the top: the matrix (4,4) into the world."""
+def _compose_matrices(line: Sequence[tuple[Floats, Floats]]) -> Floats:
+    """The transform (4,4) into the world along a path to the root."""
     out = np.eye(4)
     for matrix, _ in line:
         out = matrix @ out
     return out
 
 
-def _turned(line: Sequence[tuple[Floats, Floats]]) -> Floats:
-    """The same for rotations (4,)."""
+def _compose_rotations(line: Sequence[tuple[Floats, Floats]]) -> Floats:
+    """The rotation (4,) into the world along a path to the root."""
     out = rotations.IDENTITY_XYZW
     for _, turned in line:
         out = rotations.multiply(turned, out)

@@ -19,15 +19,15 @@ from mocapd.outputs.vmc.avatar import Avatar
 from mocapd.outputs.vmc.bone_names import vrm1_name
 from mocapd.outputs.vmc.vrm_bones import VrmNode, avatar_of_nodes
 
-MOST_JSON_BYTES = 16_000_000  # that of a large avatar has 5 MB
+MOST_JSON_BYTES = 16_000_000  # a large avatar has 5 MB
 _MOST_NODES = 30_000
-# Counted before any is made; a large avatar has a tenth of that.
+# Counted before parsing; a large avatar has a tenth of that.
 _MOST_OBJECTS, _MOST_COMMAS = 400_000, 4_000_000
 FIX = "export the avatar as VRM 0.x or 1.0, for example with UniVRM or the VRM add-on of Blender"
 
 _HEADER = struct.Struct(
     "<4sIIII"
-)  # magic, version, length of all; length and kind of the first chunk
+)  # magic, version, total length; length and kind of the first chunk
 _MAGIC, _JSON = b"glTF", 0x4E4F534A
 _VERSION = 2
 
@@ -76,11 +76,12 @@ def read_vrm(path: Path) -> Avatar:
     extensions = document.extensions
     try:
         if extensions.VRMC_vrm is not None and extensions.VRMC_vrm.humanoid is not None:
-            one = extensions.VRMC_vrm.humanoid.humanBones
-            return avatar_of_nodes(document.nodes, {name: bone.node for name, bone in one.items()})
+            bones1 = extensions.VRMC_vrm.humanoid.humanBones
+            bones = {name: bone.node for name, bone in bones1.items()}
+            return avatar_of_nodes(document.nodes, bones)
         if extensions.VRM is not None and extensions.VRM.humanoid is not None:
             bones = {vrm1_name(b.bone): b.node for b in extensions.VRM.humanoid.humanBones}
-            # of VRM 0.x an avatar faces -Z
+            # VRM 0.x avatars face -Z
             return avatar_of_nodes(document.nodes, bones, faces_back=True)
     except MalformedError as error:
         raise InputError(error.what, str(path), FIX) from None

@@ -1,11 +1,11 @@
-"""A frame as the driver VMT is sent it: one bundle with a message for each tracker, whether it is seen or not.
+"""The OSC bundle of a frame for the driver VMT: one message for each tracker, tracked or not.
 
 `/VMT/Room/Driver` has index (0..57) and enable as int32, then time offset [s], x y z [m], qx qy qz qw as float32; VMT reads
 no other types and counts (`OSCReceiver::ProcessMessage` of vmt_driver/CommunicationManager.cpp). `/VMT/Follow/Driver` has the
 serial number of a device besides: places are then relative to that device's, the axes are the room's.
 
-VMT keeps a tracker where it was last sent, for ever. So each frame has every tracker, and one that is not seen has
-enable = 0, by which SteamVR shows it as switched off; a tracker is added to SteamVR by its first enable = 1.
+VMT holds a tracker's last pose for ever. So each frame has every tracker, and an untracked one has enable = 0, which
+SteamVR shows as switched off; the first enable = 1 adds a tracker to SteamVR.
 """
 
 import struct
@@ -16,7 +16,7 @@ from mocapd.outputs.wire import Quaternion, Vector
 
 ROOM, FOLLOW = "/VMT/Room/Driver", "/VMT/Follow/Driver"
 TYPES = "iiffffffff"
-HEADSET = "HMD"  # VMT takes this for the serial number of whatever headset there is
+HEADSET = "HMD"  # VMT's alias for the serial number of the headset
 OFF, TRACKER = 0, 1  # enable
 _NOWHERE = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 
@@ -24,7 +24,7 @@ _numbers = struct.Struct(">2i8f")
 
 
 class VmtBundle:
-    """Laid out once, the numbers overwritten per frame. Eight trackers take 688 bytes at most: one datagram."""
+    """Built once, the numbers overwritten per frame. Eight trackers take 688 bytes at most: one datagram."""
 
     def __init__(self, indices: Sequence[int], follows_headset: bool) -> None:
         """indices: of the trackers in SteamVR, whose names are VMT_<index>."""
@@ -38,9 +38,8 @@ class VmtBundle:
         ]
         self._data, self._numbers_at = osc.bundle(messages)
 
-    def filled(self, poses: Sequence[tuple[Vector, Quaternion] | None]) -> bytearray:
-        """The datagram, with a place and a rotation for each tracker, None for one that is off; it is overwritten by
-        the next call."""
+    def fill(self, poses: Sequence[tuple[Vector, Quaternion] | None]) -> bytearray:
+        """The datagram with a position and rotation for each tracker, None: off. The next call overwrites it."""
         for at, index, pose in zip(self._numbers_at, self._indices, poses, strict=True):
             place, turn = pose or _NOWHERE
             enable = OFF if pose is None else TRACKER

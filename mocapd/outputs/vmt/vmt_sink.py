@@ -1,4 +1,4 @@
-"""Skeleton frames as SteamVR's trackers, by the driver VMT; see `vmt_bundle` for the messages, `steamvr_space` for where."""
+"""Skeleton frames as SteamVR's trackers, by the driver VMT; messages: `vmt_bundle`, coordinates: `steamvr_space`."""
 
 from collections import deque
 from collections.abc import Mapping
@@ -16,9 +16,9 @@ from mocapd.outputs.wire import Joint, Quaternion, SkeletonFrame, Vector
 from mocapd.outputs.worn_trackers import WornTracker, trackers_of
 
 KEY = "vmt.destination"
-# all of them: which are used, and as what, is said in SteamVR
+# all of them: the user assigns them in SteamVR
 TRACKERS = trackers_of(("hip", "feet", "chest", "knees", "elbows"))
-_HEAD_ON = "neck"  # the bone whose confidence tells how well the place of the head is known
+_HEAD_ON = "neck"  # the bone whose confidence is that of the head's position
 
 Pose = tuple[Vector, Quaternion]
 
@@ -39,9 +39,9 @@ class Params:
 
 
 class VmtSink:
-    """Sends each frame's trackers; one that is not seen is switched off. Nobody listening is counted, not an error.
+    """Sends each frame's trackers; untracked ones are switched off. Frames without a listener are counted, no error.
 
-    `tell` and `status` from any thread.
+    `send_state` and `status` from any thread.
     """
 
     name = "vmt"
@@ -49,11 +49,14 @@ class VmtSink:
     def __init__(self, params: Params) -> None:
         self._params = params
         self._trackers = ConfidentTrackers(TRACKERS)
-        self._bundle = VmtBundle([one.number for one in TRACKERS], params.anchor == "headset")
+        numbers = [tracker.number for tracker in TRACKERS]
+        self._bundle = VmtBundle(numbers, params.anchor == "headset")
         self._turn = turn_by(0.0)
-        self._asked: deque[None] = deque(maxlen=1)  # the newest wish alone; its calls are atomic
+        self._asked: deque[None] = deque(
+            maxlen=1
+        )  # a pending recenter request; deque's calls are atomic
         self._destination: Destination | None = None
-        self._is_shown = False  # whether SteamVR has a tracker that is on
+        self._is_shown = False  # whether any tracker is switched on in SteamVR
 
     def open(self) -> None:
         """Open the socket. Raises UnavailableError for an address without a route."""
@@ -65,31 +68,32 @@ class VmtSink:
         there = self._destination
         if there is None or frame.person != 0:
             return
-        seen = self._trackers.update(frame)
+        tracked = self._trackers.update(frame)
         self._take_forward(frame)
         origin_m = self._origin_m(frame.joints)
         poses = [
-            self._pose(frame.joints, one, origin_m)
-            if one in seen and origin_m is not None
+            self._pose(frame.joints, tracker, origin_m)
+            if tracker in tracked and origin_m is not None
             else None
-            for one in TRACKERS
+            for tracker in TRACKERS
         ]
         self._is_shown = any(poses)
-        there.send([self._bundle.filled(poses)])
+        there.send([self._bundle.fill(poses)])
 
     def _take_forward(self, frame: SkeletonFrame) -> None:
-        """A wish waits for a person of whom it is known where it faces."""
+        """Recenter, if requested, in the first frame with a facing direction."""
         if self._asked and (facing_rad := facing_yaw_rad(frame)) is not None:
             self._asked.clear()
             self._turn = turn_by(-facing_rad)
 
     def _origin_m(self, joints: Mapping[str, Joint]) -> Vector | None:
-        """What places are relative to, in mocapd's world [m]; None: the head is not known, and all hangs on it."""
+        """The origin of the positions in mocapd's world [m]; None: it is the head, which is not tracked."""
         if self._params.anchor == "room":
             return (0.0, 0.0, 0.0)
         head, below = joints.get("head"), joints.get(_HEAD_ON)
-        is_known = head is not None and below is not None and below.c > BEGINS_ABOVE
-        return eyes_m(head) if is_known and head is not None else None
+        if head is None or below is None or not below.c > BEGINS_ABOVE:
+            return None
+        return eyes_m(head)
 
     def _pose(self, joints: Mapping[str, Joint], tracker: WornTracker, origin_m: Vector) -> Pose:
         at = joints[tracker.place].p
@@ -97,16 +101,16 @@ class VmtSink:
         turned = room_rotation(joints[tracker.turn].r, self._turn)
         return room_position(apart, self._turn), turned
 
-    def tell(self, message: StateMessage) -> None:
-        """The way a person faces becomes forward, in the next frame in which it is seen; else nothing."""
+    def send_state(self, message: StateMessage) -> None:
+        """On a Facing message: recenter in the next frame with a facing direction. Ignores other messages."""
         if isinstance(message, Facing) and message.person == 0:
             self._asked.append(None)
 
     def status(self) -> SinkStatus:
-        """Those that were sent; also which of the trackers are not seen."""
+        """Frames sent; the detail names the untracked trackers."""
         there = self._destination
         status = status_of([] if there is None else [there])
-        missing = ", ".join(one.label for one in self._trackers.missing)
+        missing = ", ".join(tracker.label for tracker in self._trackers.missing)
         return (
             replace(status, detail=f"{status.detail}; not seen: {missing}") if missing else status
         )
@@ -118,5 +122,5 @@ class VmtSink:
             return
         if self._is_shown:
             self._is_shown = False
-            there.send([self._bundle.filled([None] * len(TRACKERS))])
+            there.send([self._bundle.fill([None] * len(TRACKERS))])
         there.close()

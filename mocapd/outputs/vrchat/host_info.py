@@ -1,8 +1,8 @@
-"""What an OSCQuery service says of itself: `GET /?HOST_INFO`, asked of whoever announced itself, so trusted in nothing.
+"""Queries the HOST_INFO of an OSCQuery service: `GET /?HOST_INFO`. The server is untrusted: anyone can announce one.
 
 VRChat answers `{"NAME": "VRChat-Client-5F3A21", "OSC_IP": "127.0.0.1", "OSC_PORT": 9000, "OSC_TRANSPORT": "UDP",
-"EXTENSIONS": {...}}`. Its OSC_IP is not read: programs announce 127.0.0.1 to a whole network
-(vrchat-community/osc#169), and where the answer came from, VRChat is. Sources: Vidvox/OSCQueryProposal, and
+"EXTENSIONS": {...}}`. Its OSC_IP is ignored: programs announce 127.0.0.1 to a whole network
+(vrchat-community/osc#169). The server's address is VRChat's. Sources: Vidvox/OSCQueryProposal, and
 github.com/vrchat-community/osc/wiki/OSCQuery.
 """
 
@@ -20,12 +20,12 @@ from mocapd.errors import MalformedError, UnavailableError
 from mocapd.outputs.http_answer import read_body
 
 PREFIX = "VRChat-Client-"  # of VRChat's name in the network
-ANSWER_S = 2.0  # how long all of an answer may take [s]
+ANSWER_S = 2.0  # timeout of the whole answer [s]
 _LONGEST_ANSWER = 64 << 10  # [bytes]
 
 
 class HostInfo(msgspec.Struct, frozen=True, rename="upper"):
-    """osc_port: where OSC is listened to, at the address of the service."""
+    """osc_port: the port for OSC, at the service's address."""
 
     name: Annotated[str, Meta(max_length=200)]
     osc_port: Annotated[int, Meta(ge=1, le=65535)]
@@ -33,7 +33,7 @@ class HostInfo(msgspec.Struct, frozen=True, rename="upper"):
 
 
 def parse_host_info(data: bytes) -> HostInfo:
-    """The answer of a VRChat. Raises MalformedError, also when it is another program's."""
+    """Parse VRChat's answer. Raises MalformedError, also for another program's answer."""
     info = decode_json(data, HostInfo)
     if not info.name.startswith(PREFIX):
         raise MalformedError(f"{info.name[:40]!r} is no VRChat")
@@ -43,7 +43,7 @@ def parse_host_info(data: bytes) -> HostInfo:
 
 
 def ask_host_info(address: str, port: int, timeout_s: float = ANSWER_S) -> HostInfo:
-    """Ask the service at a numeric address. Raises UnavailableError for anything but a good answer in time."""
+    """Query the service at a numeric address. Raises UnavailableError without a valid answer in time."""
     try:
         return parse_host_info(_get(address, port, timeout_s))
     except (OSError, HTTPException, MalformedError) as error:
@@ -59,7 +59,7 @@ def _get(address: str, port: int, timeout_s: float) -> bytes:
     with closing(HTTPConnection(address, port, timeout=timeout_s)) as connection:
         connection.connect()
         line: socket.socket = connection.sock
-        # a time for each read would let an answer drip for hours
+        # a timeout for each read alone would let an answer take hours
         end = threading.Timer(timeout_s, _hang_up, (line,))
         end.daemon = True
         end.start()

@@ -1,4 +1,4 @@
-"""A frame as VRChat is sent it: one bundle of `/tracking/trackers/<tracker>/{position,rotation}`, three floats each."""
+"""The OSC bundle of a frame for VRChat: `/tracking/trackers/<tracker>/{position,rotation}`, three floats each."""
 
 import struct
 from collections.abc import Sequence
@@ -15,26 +15,26 @@ _three_floats = struct.Struct(">3f")
 
 
 def position_address(number: int) -> str:
-    """Where a tracker is."""
+    """The address of a tracker's position."""
     return f"{ROOT}{number}/position"
 
 
 def rotation_address(number: int) -> str:
-    """How it is turned."""
+    """The address of a tracker's rotation."""
     return f"{ROOT}{number}/rotation"
 
 
 class TrackerBundle:
-    """The bundle of all frames that have these addresses: laid out once, the floats overwritten per frame.
+    """The bundle for frames with these addresses: built once, the floats overwritten per frame.
 
-    Eight trackers and the head take 1032 bytes, so that one datagram is enough for any frame.
+    Eight trackers and the head take 1032 bytes, so one datagram holds any frame.
     """
 
     def __init__(self, addresses: Sequence[str]) -> None:
         messages = [osc.message(address, TYPES, 0.0, 0.0, 0.0) for address in addresses]
         self._data, self._floats_at = osc.bundle(messages)
 
-    def filled(self, vectors: Sequence[Vector]) -> bytearray:
+    def fill(self, vectors: Sequence[Vector]) -> bytearray:
         """The datagram with one vector for each address; it is overwritten by the next call."""
         for at, vector in zip(self._floats_at, vectors, strict=True):
             _three_floats.pack_into(self._data, at, *vector)

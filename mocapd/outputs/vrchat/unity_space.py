@@ -1,9 +1,9 @@
-"""From mocapd's world to the space that VRChat is sent: Unity's axes, and Euler angles in degrees.
+"""Converts poses from mocapd's world to VRChat's: Unity's axes, and Euler angles in degrees.
 
-Unity is left-handed, +y up, and who looks forward looks along +z with the left towards -x. A person at rest in
-mocapd's world faces +Z with the left towards +X. So x is negated, and no rotation means looking forward in both, as
-VRChat assumes of the head. (SlimeVR, whose people face -z, negates z; the two differ by half a turn.) Scalars, as
-there are some twenty of them a frame. Source: docs.vrchat.com/docs/osc-trackers.
+Unity is left-handed, +y up; forward is +z with the left towards -x. A person at rest in mocapd's world faces +Z with
+the left towards +X. So x is negated, and a rotation of zero faces forward in both, as VRChat assumes of the head.
+(SlimeVR, where a person faces -z, negates z; the two differ by half a turn.) Scalars, because a frame has only some
+twenty vectors. Source: docs.vrchat.com/docs/osc-trackers.
 """
 
 import math
@@ -14,7 +14,7 @@ _LOCKED = 1.0 - 1e-9  # sine of the angle about x from which the other two turn 
 
 
 def unity_position(world_m: Vector, turn: tuple[float, float]) -> Vector:
-    """A place in the world [m], turned about +Y by an angle of this cosine and sine, in Unity's axes [m]."""
+    """A world position [m], rotated about +Y by an angle of this cosine and sine, in Unity's axes [m]."""
     x, y, z = world_m
     cos, sin = turn
     return -(cos * x + sin * z), y, cos * z - sin * x
@@ -39,5 +39,5 @@ def unity_euler_deg(world_xyzw: Quaternion, half_turn: tuple[float, float]) -> V
 
 
 def cos_sin(angle_rad: float) -> tuple[float, float]:
-    """Of a turn that many things are turned by."""
+    """Cosine and sine of an angle."""
     return math.cos(angle_rad), math.sin(angle_rad)

@@ -1,8 +1,8 @@
-"""Finds VRChat in the local network by OSCQuery, and follows it when it starts anew on other ports.
+"""Finds VRChat in the local network by OSCQuery, also after a restart on other ports.
 
-VRChat announces an HTTP service of the type `_oscjson._tcp` by multicast DNS; that says where it listens for OSC.
-Whoever is in the network can announce one: what they say is checked, and only addresses of local networks are asked
-and sent to.
+VRChat announces an HTTP service of the type `_oscjson._tcp` by multicast DNS, and the service returns the port for OSC.
+Any host in the network can announce such a service. So answers are checked, and only addresses of local networks are
+queried and used.
 """
 
 import ipaddress
@@ -21,23 +21,23 @@ if TYPE_CHECKING:
     from zeroconf import Zeroconf
 
 SERVICE = "_oscjson._tcp.local."
-LOOK_AGAIN_S = 2.0  # while what was announced does not answer [s]
-RENEW_S = 60.0  # without any announcement, in case the network is another by now [s]
+LOOK_AGAIN_S = 2.0  # retry interval while an announced service does not answer [s]
+RENEW_S = 60.0  # without announcements, then Zeroconf restarts: the network may have changed [s]
 RESOLVE_MS = 1000
-MOST_KNOWN = 16  # services, and announcements that wait
-STOP_S = 0.5  # what ending may take; an answer that is waited for is left [s]
+MOST_SERVICES = 16  # also the limit of queued announcements
+STOP_S = 0.5  # limit of `stop`; a pending query is abandoned [s]
 
 _log = logging.getLogger(__name__)
 
 
 class VRChatFinder:
-    """Looks from `start` to `stop`, in a thread of its own. Of several the one that was announced last counts, as
-    that is the one that was just started. `address` and `detail` from any thread."""
+    """Searches from `start` to `stop` in its own thread. Of several services the newest one counts, because that VRChat
+    was just started. Read `address` and `detail` from any thread."""
 
     def __init__(self, interfaces: Sequence[str] | None = None) -> None:
-        """interfaces: addresses of this machine by which to look; None: all."""
+        """interfaces: addresses of this machine's interfaces to search on; None: all."""
         self._interfaces = interfaces
-        self.address: str | None = None  # `address:port`, None while none is known
+        self.address: str | None = None  # `address:port`; None: not found
         self.detail = "not looked for yet"
         self._source = ""  # the service that gave the address
         self._announcements: Queue[tuple[str, bool]] = Queue()
@@ -45,7 +45,7 @@ class VRChatFinder:
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Returns at once. Raises MissingExtraError where its library is not installed."""
+        """Start the search; returns at once. Raises MissingExtraError where its library is not installed."""
         require_extra(
             "vrchat", "vrchat.destination", "give VRChat's address, such as 127.0.0.1:9000"
         )
@@ -54,7 +54,7 @@ class VRChatFinder:
         self._thread.start()
 
     def stop(self) -> None:
-        """Look no more; may be called twice."""
+        """Stop the search; may be called twice."""
         self._ended.set()
         self._announcements.put(("", False))
         if self._thread is not None:
@@ -76,38 +76,38 @@ class VRChatFinder:
                 self._ended.wait(LOOK_AGAIN_S)
 
     def _look(self, network: "Zeroconf") -> None:
-        """Until it ends, or has heard nothing for long."""
+        """Search until `stop`, or RENEW_S without an announcement."""
         from zeroconf import ServiceBrowser
 
-        known: dict[str, None] = {}  # in the order of their announcement
-        is_asked = True  # whether all that is known has been asked
+        services: dict[str, None] = {}  # in the order of their announcement
+        is_asked = True  # whether these services have been queried
         heard_s = time.monotonic()
-        ServiceBrowser(network, SERVICE, handlers=[self._announced])
+        ServiceBrowser(network, SERVICE, handlers=[self._on_announcement])
         while not self._ended.is_set():
             try:
                 name, is_there = self._announcements.get(timeout=LOOK_AGAIN_S)
-                known.pop(name, None)
+                services.pop(name, None)
                 if is_there:
-                    known[name] = None
+                    services[name] = None
                 elif name == self._source:
                     self._set(None, "")
                 heard_s, is_asked = time.monotonic(), False
             except Empty:
-                if not known and time.monotonic() - heard_s > RENEW_S:
+                if not services and time.monotonic() - heard_s > RENEW_S:
                     return
-            for oldest in list(known)[:-MOST_KNOWN]:
-                del known[oldest]
-            if known and not is_asked and not self._ended.is_set():
-                is_asked = self._ask(network, list(reversed(known)))
+            for oldest in list(services)[:-MOST_SERVICES]:
+                del services[oldest]
+            if services and not is_asked and not self._ended.is_set():
+                is_asked = self._ask(network, list(reversed(services)))
 
-    def _announced(self, **heard: Any) -> None:
-        """Of one service, in a thread of zeroconf's, whose words are `name` and `state_change`."""
-        name, change = heard["name"], heard["state_change"]
-        if name.startswith(PREFIX) and self._announcements.qsize() < MOST_KNOWN:
+    def _on_announcement(self, **event: Any) -> None:
+        """Called in a thread of zeroconf with the keywords `name` and `state_change`."""
+        name, change = event["name"], event["state_change"]
+        if name.startswith(PREFIX) and self._announcements.qsize() < MOST_SERVICES:
             self._announcements.put((name, change.name != "Removed"))
 
     def _ask(self, network: "Zeroconf", names: Sequence[str]) -> bool:
-        """Whether one of these tells where it listens; until one does, it stays where it was."""
+        """Set the address from the first service that answers; False, and no change, where none does."""
         for name in names:
             for address, port in _places(network, name):
                 try:
@@ -131,23 +131,22 @@ class VRChatFinder:
 
 
 def _places(network: "Zeroconf", name: str) -> list[tuple[str, int]]:
-    """Where a service may be asked, this machine first: numeric addresses of local networks."""
+    """The service's numeric addresses in local networks, this machine first."""
     import zeroconf
 
     try:
         info = network.get_service_info(SERVICE, name, RESOLVE_MS)
-    except zeroconf.Error:  # such as a name that is none
+    except zeroconf.Error:  # such as an invalid name
         return []
     if info is None or not info.port:
         return []
     addresses = info.addresses_by_version(zeroconf.IPVersion.V4Only)
-    found = [ipaddress.IPv4Address(one) for one in addresses]
-    local = [one for one in found if is_of_local_network(one)]
-    return [(str(one), info.port) for one in sorted(local, key=lambda one: not one.is_loopback)]
+    local = [ip for ip in map(ipaddress.IPv4Address, addresses) if is_of_local_network(ip)]
+    return [(str(ip), info.port) for ip in sorted(local, key=lambda ip: not ip.is_loopback)]
 
 
 def is_of_local_network(address: ipaddress.IPv4Address) -> bool:
-    """Whether it is of one machine in a local network."""
+    """True for the address of one machine in a local network."""
     return address.is_private and not (
         address.is_multicast or address.is_unspecified or address.is_reserved
     )

@@ -1,4 +1,4 @@
-"""The UDP socket to wherever VRChat is now."""
+"""The UDP socket to VRChat's current address."""
 
 from mocapd.errors import UnavailableError
 from mocapd.outputs.base import SinkStatus
@@ -8,16 +8,16 @@ KEY = "vrchat.destination"
 
 
 class VRChatLink:
-    """Frames are counted on when it is aimed elsewhere. `status` from any thread, the rest from one at a time."""
+    """Counts frames over all addresses. `status` from any thread, the rest from one at a time."""
 
     def __init__(self) -> None:
         self._destination: Destination | None = None
         self._aim: str | None = None
-        self._sent = self._refused = 0  # to where it was aimed before
+        self._sent = self._refused = 0  # to earlier addresses
 
     def aim(self, address: str | None) -> None:
-        """From now on there, `address:port`; None: nowhere. Raises UnavailableError where no way leads: once, until
-        it is aimed elsewhere."""
+        """Set the address, `address:port`; None: no address. Raises UnavailableError for an address without a route, once
+        for each change."""
         if address == self._aim:
             return
         self.close()
@@ -31,20 +31,20 @@ class VRChatLink:
 
     @property
     def is_aimed(self) -> bool:
-        """Whether it is known where VRChat is."""
+        """True while it has an address."""
         return self._destination is not None
 
     def send(self, datagram: bytearray) -> None:
-        """One frame, while it is aimed."""
+        """Send one frame, if it has an address."""
         if self._destination is not None:
             self._destination.send([datagram])
 
     def refuse(self) -> None:
-        """Count a frame for which it is aimed nowhere."""
+        """Count a frame without an address as refused."""
         self._refused += 1
 
     def status(self) -> SinkStatus:
-        """Of all frames; `listeners` is -1 on other machines, which cannot be asked."""
+        """Counts of all frames; `listeners` is -1 for an address on another machine."""
         there = self._destination
         if there is None:
             return SinkStatus(self._sent, self._refused, 0, "closed")

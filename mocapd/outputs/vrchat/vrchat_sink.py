@@ -1,4 +1,4 @@
-"""Skeleton frames as VRChat's OSC trackers over UDP; see `worn_trackers` for which and `unity_space` for where."""
+"""Skeleton frames as VRChat's OSC trackers over UDP; trackers: `worn_trackers`, coordinates: `unity_space`."""
 
 import logging
 import math
@@ -26,7 +26,7 @@ from mocapd.outputs.wire import Joint, SkeletonFrame, Vector
 from mocapd.outputs.worn_trackers import BodyPart, WornTracker, trackers_of
 
 AUTO = "auto"
-HEAD_ON = "neck"  # the bone whose confidence tells how well the place of the head is known
+HEAD_ON = "neck"  # the bone whose confidence is that of the head's position
 
 _log = logging.getLogger(__name__)
 
@@ -61,9 +61,9 @@ class Params:
 
 
 class VRChatSink:
-    """Sends each frame's trackers, as far as they are seen. Nobody listening is counted, not an error.
+    """Sends each frame's confident trackers. Frames without a listener are counted, not an error.
 
-    `tell` and `status` from any thread.
+    `send_state` and `status` from any thread.
     """
 
     name = "vrchat"
@@ -79,8 +79,8 @@ class VRChatSink:
         self._bundles: dict[tuple[str, ...], TrackerBundle] = {}  # by addresses, 1024 at most
 
     def open(self) -> None:
-        """Open the socket, or begin to look for VRChat. Raises UnavailableError for an address without a route,
-        ConfigError where the library that looks is not installed."""
+        """Open the socket, or start the search for VRChat. Raises UnavailableError for an address without a route,
+        ConfigError where the library for the search is not installed."""
         self.close()
         if self._finder is None:
             self._link.aim(self._params.destination)
@@ -88,7 +88,7 @@ class VRChatSink:
             self._finder.start()
 
     def send(self, frame: SkeletonFrame) -> None:
-        """Send what is seen of one frame, as one bundle; nothing when nothing is, or one was sent just now."""
+        """Send one frame's confident trackers as one bundle; nothing without any, or above `rate_hz`."""
         now_ns = frame.publish_monotonic_ns
         trackers = self._trackers.update(frame)
         if not trackers or not self._cap.takes(now_ns):
@@ -96,7 +96,7 @@ class VRChatSink:
         if self._finder is not None:
             self._follow(self._finder.address)
         if not self._link.is_aimed:
-            self._link.refuse()  # and a wish to be turned waits
+            self._link.refuse()  # a recenter request stays pending
             return
         is_aligned = self._alignment.take(now_ns, facing_yaw_rad(frame))
         vectors = self._vectors(frame.joints, trackers, is_aligned)
@@ -104,10 +104,10 @@ class VRChatSink:
         bundle = self._bundles.get(addresses)
         if bundle is None:
             bundle = self._bundles[addresses] = TrackerBundle(addresses)
-        self._link.send(bundle.filled(tuple(vectors.values())))
+        self._link.send(bundle.fill(tuple(vectors.values())))
 
     def _follow(self, address: str | None) -> None:
-        """To where VRChat was found."""
+        """Use the address that the search found."""
         try:
             self._link.aim(address)
         except UnavailableError as error:
@@ -116,7 +116,7 @@ class VRChatSink:
     def _vectors(
         self, joints: Mapping[str, Joint], trackers: tuple[WornTracker, ...], is_aligned: bool
     ) -> dict[str, Vector]:
-        """What is sent, by address: the head first, as the others are read by it."""
+        """The vectors to send by OSC address, the head first: receivers place the others relative to it."""
         turn_rad = self._alignment.turn_rad
         turn, half_turn = cos_sin(turn_rad), cos_sin(0.5 * turn_rad)
         vectors: dict[str, Vector] = {}
@@ -124,41 +124,41 @@ class VRChatSink:
         if self._params.head and head is not None and below is not None and below.c > BEGINS_ABOVE:
             vectors[tracker_bundle.HEAD_POSITION] = unity_position(head.p, turn)
         if is_aligned:
-            # level: VRChat takes its yaw
+            # without pitch and roll: VRChat uses the yaw
             half_forward = cos_sin(0.5 * self._alignment.forward_rad)
             vectors[tracker_bundle.HEAD_ROTATION] = unity_euler_deg(IDENTITY_XYZW, half_forward)
-        for one in trackers:
-            place, rotation = joints[one.place].p, joints[one.turn].r
-            vectors[tracker_bundle.position_address(one.number)] = unity_position(place, turn)
-            vectors[tracker_bundle.rotation_address(one.number)] = unity_euler_deg(
+        for tracker in trackers:
+            place, rotation = joints[tracker.place].p, joints[tracker.turn].r
+            vectors[tracker_bundle.position_address(tracker.number)] = unity_position(place, turn)
+            vectors[tracker_bundle.rotation_address(tracker.number)] = unity_euler_deg(
                 rotation, half_turn
             )
         return vectors
 
-    def tell(self, message: StateMessage) -> None:
-        """The way a person faces becomes forward, in the next frame in which it is seen; else nothing."""
+    def send_state(self, message: StateMessage) -> None:
+        """On a Facing message: recenter in the next frame with a facing direction. Ignores other messages."""
         if isinstance(message, Facing):
             self._alignment.ask()
 
     def status(self) -> SinkStatus:
-        """Those that were sent; also which of the trackers are not seen."""
+        """Frames sent; the detail names the untracked trackers."""
         status = self._link.status()
         if self._finder is not None and self._finder.address is None:
             status = replace(status, detail=self._finder.detail)
-        missing = ", ".join(one.label for one in self._trackers.missing)
+        missing = ", ".join(tracker.label for tracker in self._trackers.missing)
         return (
             replace(status, detail=f"{status.detail}; not seen: {missing}") if missing else status
         )
 
     def close(self) -> None:
-        """Close the socket, look no more; may be called twice."""
+        """Stop the search, close the socket; may be called twice."""
         if self._finder is not None:
             self._finder.stop()
         self._link.close()
 
 
 def warnings(params: Params) -> tuple[str, ...]:
-    """A line for each setting that is permitted and yet unsafe."""
+    """One warning for each permitted but unsafe setting."""
     if params.destination != AUTO:
         return ()
     return (

@@ -27,7 +27,7 @@ def calibration(instance: str) -> str:
 
 
 def rest_skeleton(instance: str, person: int | str) -> str:
-    """State: `messages.RestSkeleton`. Not below the frames' key: who takes `skeleton/**` wants frames."""
+    """State: `messages.RestSkeleton`. Not below the frames' key: a subscriber of `skeleton/**` wants frames."""
     return f"{ROOT}/{instance}/rest_skeleton/{person}"
 
 

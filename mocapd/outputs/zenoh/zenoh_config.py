@@ -1,8 +1,8 @@
-"""The Zenoh session of the daemon: its parameters, and the configuration they amount to.
+"""The daemon's Zenoh session: its parameters, and the Zenoh configuration for them.
 
 Zenoh's own defaults are not safe here: a peer listens on every address, scouts by multicast and
-gossips. This one opens a single socket on 127.0.0.1 unless told otherwise, and whoever connects
-may read and ask, never write.
+gossips. This session opens one socket on 127.0.0.1 by default. Clients may subscribe and query,
+never write.
 """
 
 import ipaddress
@@ -21,7 +21,7 @@ PORT = 7447
 FORMATS = ("msgpack", "json")
 ENCRYPTED = ("tls", "quic")
 
-# kept as text; one that is relative is meant from the file that it is configured in
+# stored as text; a relative path starts at the configuration file
 PathText = Annotated[str, Meta(extra={"is_path": True})]
 
 
@@ -119,13 +119,13 @@ def is_loopback(endpoint: str) -> bool:
     try:
         return ipaddress.ip_address(address).is_loopback
     except ValueError:
-        return False  # a name: where it leads is not ours to know
+        return False  # a name: it may resolve to any address
 
 
 def _is_file(path: str) -> bool:
     try:
         return Path(path).is_file()
-    except OSError:  # too long, or in a folder that is closed to us
+    except OSError:  # too long, or in a folder without permission
         return False
 
 
@@ -135,7 +135,7 @@ def _require(holds: bool, key: str, value: object, wanted: str) -> None:
 
 
 def listen_endpoints(params: Params) -> tuple[str, ...]:
-    """Where the session listens; empty when it joins a router."""
+    """The endpoints that the session listens on; empty when it joins a router."""
     if params.connect:
         return ()
     return params.listen or (f"tcp/{LOOPBACK}:{params.port}",)
@@ -162,7 +162,7 @@ def session_config(params: Params) -> dict[str, Any]:
         return config
     config["listen"] = {"endpoints": list(listen_endpoints(params))}
     config["access_control"] = READ_ONLY
-    # lets the status line ask who subscribes; READ_ONLY keeps everybody else out of it
+    # lets the status line query the subscribers; READ_ONLY denies it to clients
     config["adminspace"] = {"enabled": True, "permissions": {"read": True, "write": False}}
     return config
 
@@ -196,7 +196,7 @@ READ_ONLY: dict[str, Any] = {
             "key_exprs": ["mocapd/**"],
         },
         {
-            "id": "tell",
+            "id": "publish",
             "messages": ["put", "delete", "reply", "liveliness_token"],
             "flows": ["egress"],
             "permission": "allow",
@@ -204,5 +204,5 @@ READ_ONLY: dict[str, Any] = {
         },
     ],
     "subjects": [{"id": "anyone"}],
-    "policies": [{"rules": ["ask", "tell"], "subjects": ["anyone"]}],
+    "policies": [{"rules": ["ask", "publish"], "subjects": ["anyone"]}],
 }

@@ -1,8 +1,8 @@
-"""Who is connected to the daemon's Zenoh session, for the status line.
+"""Names the clients connected to the daemon's Zenoh session, for the status line.
 
-Which of them subscribe, the session's admin space would say, but must not be asked: it answers while it holds
-the routing tables' lock for reading and takes it again for each reply, so that a subscriber that is declared
-between the two stops the whole session for good (seen with eclipse-zenoh 1.10.2 within seconds).
+Do not query the session's admin space for the subscribers among them. It holds the routing tables' read lock while it
+answers and takes the lock again for each reply: a subscriber declared between the two deadlocks the session
+(reproduced with eclipse-zenoh 1.10.2 within seconds).
 """
 
 import zenoh
@@ -11,16 +11,16 @@ from mocapd.outputs.socket_owners import owners_of
 
 
 class ListenerNames:
-    """Names sessions by their process, or by their address when it is on another machine.
+    """Names sessions by their process, or by their address on another machine.
 
-    Looking up a process walks every process's sockets, so a name is kept while its session lives.
+    A process look-up walks every process's sockets, so the names of live sessions are cached.
     """
 
     def __init__(self) -> None:
         self._names: dict[str, str] = {}
 
     def of(self, session: zenoh.Session) -> tuple[str, ...]:
-        """One name per connected session, such as `godot (pid 12)` or `192.168.1.7`, in a lasting order."""
+        """One name per connected session, such as `godot (pid 12)` or `192.168.1.7`, in a stable order."""
         addresses = {
             str(link.zid): link.dst.partition("/")[2].rpartition(":")
             for link in session.info.links()

@@ -1,4 +1,4 @@
-"""Opening the daemon's Zenoh session, with every refusal said in one line."""
+"""Opens the daemon's Zenoh session, with a one-line error for every refusal."""
 
 import json
 from pathlib import Path
@@ -12,25 +12,26 @@ from mocapd.outputs.socket_owners import holder_of
 from mocapd.outputs.zenoh.zenoh_config import Params, listen_endpoints, session_config
 from mocapd.outputs.zenoh.zenoh_password_file import check_password_file
 
-TAKEN = "os error 98"  # EADDRINUSE in the text of Zenoh's errors, which have no code
+TAKEN = "os error 98"  # EADDRINUSE in the text of Zenoh's errors, which have no error number
 FORBIDDEN = "os error 13"  # EACCES
 
 
 def open_session(params: Params, config: dict[str, Any] | None = None) -> zenoh.Session:
-    """The session. Raises UnavailableError or PermissionDeniedError with the mend.
+    """Open the session. Raises UnavailableError or PermissionDeniedError with the fix; for a taken port it names the
+    process that holds it.
 
-    config: Zenoh's own, in place of the daemon's. A taken port names the process that holds it. Raises ConfigError when
-    the password file changed into one that does not do since the parameters were made.
+    config: a Zenoh configuration instead of the daemon's. Raises ConfigError when the password file has become invalid
+    since the parameters were checked.
     """
     if params.password_file:
         check_password_file(Path(params.password_file))
     try:
         return zenoh.open(zenoh.Config.from_json5(json.dumps(config or session_config(params))))
     except zenoh.ZError as error:
-        raise _explained(params, str(error)) from error
+        raise _explain_error(params, str(error)) from error
 
 
-def _explained(params: Params, text: str) -> MocapdError:
+def _explain_error(params: Params, text: str) -> MocapdError:
     if params.connect:
         return UnavailableError(
             "no Zenoh router answers",
@@ -52,7 +53,7 @@ def _explained(params: Params, text: str) -> MocapdError:
         return PermissionDeniedError(
             "not allowed to listen there", where, "choose a zenoh.port above 1023"
         )
-    # past the sentence itself Zenoh appends the place in its own source
+    # after the sentence Zenoh appends the position in its source
     return UnavailableError(
         f"Zenoh does not open: {text.partition(' at /')[0]}", where, "mend zenoh.listen"
     )

@@ -1,8 +1,8 @@
 """The password file, checked before Zenoh reads it.
 
-Zenoh lets everybody in when the file names nobody, and keeps a user out without a word when a line
-does not mean what it seems to. It takes a line apart at its first colon, drops white space around
-user and password, and skips lines of white space. No message here shows what a line says.
+Zenoh admits every client when the file has no user, and silently refuses a user whose line is malformed. It splits a
+line at its first colon, strips white space from user and password, and skips blank lines. Messages here never show a
+line's content.
 """
 
 import unicodedata
@@ -16,7 +16,7 @@ BYTE_ORDER_MARK = "\ufeff"
 
 
 def check_password_file(path: Path) -> None:
-    """Raises ConfigError unless it names at least one user, and every line can log somebody in."""
+    """Raises ConfigError unless the file has at least one user and every line is a valid login."""
     lines = _text(path).split("\n")
     users: dict[str, int] = {}
     for number, line in enumerate(lines, 1):
@@ -32,13 +32,13 @@ def check_password_file(path: Path) -> None:
         users[user] = number
     if not users:
         raise _refusal(
-            f"{path} names nobody, which would let everybody in",
+            f"{path} names no user, which would let everyone in",
             "write one line user:password for each user, or set no zenoh.password_file",
         )
 
 
 def first_login(path: Path) -> tuple[str, str]:
-    """User and password of the first line of a file that was checked. Raises ConfigError."""
+    """User and password of the first line of a checked file. Raises ConfigError."""
     first = next((line for line in _text(path).split("\n") if line.strip()), "")
     user, _, password = first.partition(":")
     return user.strip(), password.strip()
@@ -60,7 +60,7 @@ def _text(path: Path) -> str:
         text = data.decode()
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        # not chained: the error holds the whole file
+        # not chained: the original error holds the whole file
         raise _refusal(f"line {line} of {path} is no UTF-8", "save it as UTF-8") from None
     if text.startswith(BYTE_ORDER_MARK):
         raise _refusal(
@@ -71,7 +71,7 @@ def _text(path: Path) -> str:
 
 
 def _user(line: str, where: str) -> str:
-    """The user of one line. Raises ConfigError when nobody could log in by it."""
+    """The user of one line. Raises ConfigError for an invalid login."""
     user, colon, password = (part.strip() for part in line.partition(":"))
     if not colon:
         raise _refusal(f"{where} has no colon", "write user:password")

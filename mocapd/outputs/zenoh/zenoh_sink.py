@@ -20,17 +20,16 @@ from mocapd.outputs.zenoh.zenoh_open import open_session
 from mocapd.outputs.zenoh.zenoh_state import ZenohState
 from mocapd.outputs.zenoh.zenoh_warnings import warnings
 
-# Who was heard is taken to be for so long, as to ask costs more than to send [ns].
+# Validity of a positive subscriber check, because the check costs more than a send [ns].
 _HEARD_NS = NS_PER_S // 10
 
 _log = logging.getLogger(__name__)
 
 
 class ZenohSink:
-    """Publishes frames, answers late joiners, and shows that it lives by a liveliness token.
+    """Publishes frames, answers late joiners, and holds a liveliness token.
 
-    `send` from one thread; `tell` and `status` from any. While nobody subscribes a frame is
-    not even encoded.
+    `send` from one thread; `send_state` and `status` from any. Without subscribers, frames are not encoded.
     """
 
     name = "zenoh"
@@ -50,15 +49,15 @@ class ZenohSink:
         self._unheard = 0
 
     def open(self) -> None:
-        """Open the session. Raises UnavailableError; a taken port names its holder and the mend."""
+        """Open the session. Raises UnavailableError, which names the holder of a taken port."""
         for text in warnings(self._params):
             _log.warning("%s", text)
         session = self._opened.enter_context(open_session(self._params))
         self._state.attach(session, self._opened)
-        # forgetting a publisher speaks to everybody who is connected, so it belongs to the end
+        # undeclaring a publisher sends to every client, so it belongs to the close
         self._opened.callback(self._publishers.clear)
         self._publishers[0] = self._declare(session, 0)
-        # last in and so first out: whoever sees the token finds everything else in place
+        # last in, first out: while the token exists, everything else does
         self._opened.enter_context(session.liveliness().declare_token(keys.alive(self.instance)))
         self._session = session
 
@@ -66,15 +65,14 @@ class ZenohSink:
         return session.declare_publisher(
             keys.skeleton(self.instance, person),
             encoding=wire.JSON if self._json else wire.MSGPACK,
-            # a frame that cannot leave now is worthless in a moment: drop it, never wait; and do
-            # not hold it back to fill a batch
+            # drop a frame that cannot be sent now instead of waiting; do not delay it for a batch
             congestion_control=zenoh.CongestionControl.DROP,
             priority=zenoh.Priority.REAL_TIME,
             express=True,
         )
 
     def send(self, frame: SkeletonFrame) -> None:
-        """Publish one frame if somebody subscribes to its person; before `open` nobody does."""
+        """Publish one frame if its person has a subscriber; does nothing before `open`."""
         session = self._session
         if session is None:
             return
@@ -90,19 +88,19 @@ class ZenohSink:
         publisher.put(wire.encode_json(frame) if self._json else wire.encode_msgpack(frame))
         self._sent += 1
 
-    def tell(self, message: StateMessage) -> None:
-        """Publish it, and keep it for late joiners."""
+    def send_state(self, message: StateMessage) -> None:
+        """Publish the state, and store it for late joiners."""
         self._state.set(message)
 
     def status(self) -> SinkStatus:
-        """`refused` counts the frames made while nobody listened; `listeners` the programs that are connected
-        while one of them takes frames."""
+        """`refused` counts the frames without a subscriber; `listeners` the connected programs, while at least one
+        of them subscribes."""
         session = self._session
         if session is None:
             return SinkStatus(self._sent, self._unheard, 0, "closed")
         heard = any(_is_heard(publisher) for publisher in list(self._publishers.values()))
         if self._params.connect:
-            # the router knows who listens behind it, we only know whether anybody does
+            # the subscribers are behind the router: we only see whether there are any
             detail = f"joined {', '.join(self._params.connect)}"
             return SinkStatus(
                 self._sent,
@@ -111,13 +109,15 @@ class ZenohSink:
                 detail if heard else f"{detail}, nobody listens",
             )
         names = self._listener_names.of(session) if heard else ()
-        nobody = f"nobody listens on {', '.join(listen_endpoints(self._params))}"
-        return SinkStatus(self._sent, self._unheard, len(names), ", ".join(names) or nobody)
+        detail = (
+            ", ".join(names) or f"nobody listens on {', '.join(listen_endpoints(self._params))}"
+        )
+        return SinkStatus(self._sent, self._unheard, len(names), detail)
 
     def close(self) -> None:
-        """Take back the token, so that clients learn of the end, then everything else.
+        """Withdraw the token, so that clients notice the end, then close everything else.
 
-        Within about a second, whatever the clients do.
+        Takes about a second at most, whatever the clients do.
         """
         self._session = None
         self._publishers, self._heard_until_ns = {}, {}

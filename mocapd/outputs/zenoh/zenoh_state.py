@@ -1,4 +1,4 @@
-"""State on Zenoh: published when it changes, and answered to whoever asks later."""
+"""State on Zenoh: published on change, and returned to later queries."""
 
 import threading
 from collections.abc import Callable
@@ -45,14 +45,14 @@ class ZenohState:
             keys.facing(self._instance, keys.ANY),
             keys.schema(self._instance, keys.ANY),
         ):
-            # on Zenoh's own thread: the Python thread it would else start keeps a process whose
-            # main thread died from ending
+            # on Zenoh's own thread: the default Python thread would keep a process alive whose
+            # main thread died
             handler = zenoh.handlers.Callback(self._answer_for(family), indirect=False)
             opened.enter_context(session.declare_queryable(family, handler))
         self._session = session
 
     def detach(self) -> None:
-        """Publish no more changes; what was set stays known."""
+        """Stop publishing changes; the stored states stay."""
         self._session = None
 
     def set(self, message: StateMessage) -> None:

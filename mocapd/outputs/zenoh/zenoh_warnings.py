@@ -1,4 +1,4 @@
-"""What is permitted and yet unsafe in the Zenoh parameters, one line each."""
+"""Warnings about permitted but unsafe Zenoh parameters."""
 
 from pathlib import Path
 
@@ -9,20 +9,20 @@ SECRETS = ("tls_private_key", "password_file")
 
 
 def warnings(params: Params) -> tuple[str, ...]:
-    """A sentence with its mend for each unsafe setting; looks at the files' modes now."""
-    found = [_readable(name, str(getattr(params, name))) for name in SECRETS]
-    found += [_open_to_a_network(params, endpoint) for endpoint in params.listen]
-    return tuple(text for text in found if text)
+    """A warning with its fix for each unsafe setting; reads the files' modes now."""
+    texts = [_readable(name, str(getattr(params, name))) for name in SECRETS]
+    texts += [_open_to_a_network(params, endpoint) for endpoint in params.listen]
+    return tuple(text for text in texts if text)
 
 
 def _readable(name: str, path: str) -> str:
-    """Empty when only those who must may read the file, or it is gone: opening the session tells."""
-    who = readers_of(Path(path)) if path else ""
-    return f"zenoh.{name}: {who} may read {path} -- {narrowing(Path(path))}" if who else ""
+    """Empty when the file's permissions are narrow enough, or it is gone (then opening the session fails)."""
+    readers = readers_of(Path(path)) if path else ""
+    return f"zenoh.{name}: {readers} may read {path} -- {narrowing(Path(path))}" if readers else ""
 
 
 def _open_to_a_network(params: Params, endpoint: str) -> str:
-    """Empty when the endpoint stays on this machine, or encrypts and knows its clients."""
+    """Empty for an endpoint on this machine, or one with encryption and client authentication."""
     if is_loopback(endpoint):
         return ""
     if endpoint.partition("/")[0] not in ENCRYPTED:

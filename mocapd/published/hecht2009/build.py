@@ -1,4 +1,4 @@
-"""Make the published tracker from what is known of rig and person."""
+"""Builds the published tracker from the calibration."""
 
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.published.hecht2009.params import Params

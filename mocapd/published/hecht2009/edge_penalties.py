@@ -34,7 +34,7 @@ def ends_m(frusta: Frusta, points_m: Floats) -> Floats:
 def edge_penalties(
     frusta: Frusta, limb: str, points_m: Floats, views: Sequence[LimbView], score: LimbScoreParams
 ) -> Floats:
-    """The edge penalty (N,) 0..1 of a limb in N places (N,3,3), of what is seen of it; 1 where nothing is."""
+    """The edge penalty (N,) 0..1 of the visible part of a limb in N places (N,3,3); 1 where nothing is visible."""
     parts = PARTS[limb]
     penalties = limb_penalties(points_m, radii_m(frusta)[list(parts)], parts, views, score)
     seen = penalties.seen[..., EDGE].sum(axis=0)

@@ -1,4 +1,4 @@
-"""What each camera shows: its work picture, edges and motion, what stands before its background, and what hides what."""
+"""Evidence of each camera: work picture, edges and motion, foreground, and occlusion model."""
 
 from collections.abc import Sequence
 
@@ -21,7 +21,7 @@ from mocapd.vision.foreground_kernels import SHADOW, UNKNOWN
 from mocapd.vision.frame_size import check_frame_size
 from mocapd.vision.room_background import RoomBackground
 
-_ALONG = (np.arange(6) + 0.5) / 6.0  # where a part is looked at, from start to end
+_ALONG = (np.arange(6) + 0.5) / 6.0  # sample positions on a part, from start to end
 
 
 class CameraEvidence:
@@ -53,11 +53,11 @@ class CameraEvidence:
 
     @property
     def present(self) -> bool:
-        """Whether the camera took part in the last frame set."""
+        """True if the last frame set had a frame of this camera."""
         return self._pixels is not None
 
     def look(self, pixels: Bytes | None, offset_s: float) -> None:
-        """Take a frame's pixels (h,w,3), or none. Raises ConfigError when it is not of its calibration's size."""
+        """Process a frame's pixels (h,w,3), or None. Raises ConfigError when its size is not the calibration's."""
         had = self._pixels is not None
         self._pixels, self.offset_s = pixels, offset_s
         if pixels is None:
@@ -68,7 +68,7 @@ class CameraEvidence:
         self._edges.fill(self._now.grey, self._last.grey if had else None, self._params.edges)
 
     def stand_before(self, uncovered: bool) -> None:
-        """Renew what stands before the background; uncovered: and take for background what was uncovered."""
+        """Update the foreground; uncovered: also move uncovered background (ghosts) into the background model."""
         self.background.follow_light(self._now.colour, self._body)
         self.before = self.background.before(self._now.colour)
         if uncovered:
@@ -76,8 +76,8 @@ class CameraEvidence:
             self.background.take_uncovered(self._now.colour, self.before, self._body, no_arms)
 
     def mark_body(self, ends_m: Floats | None, radii_m: Floats) -> None:
-        """Where the parts of ends (C,2,3) and radii (C,2) [m] are, widened, nothing is learned as background, and they hide
-        each other; None: nobody is known."""
+        """Mark the body: parts of ends (C,2,3) and radii (C,2) [m]. The background is not learned in their widened outlines,
+        and they occlude each other. None: no body is tracked."""
         self._body[:] = 0
         if ends_m is None:
             return
@@ -91,25 +91,25 @@ class CameraEvidence:
         self._body = np.asarray(cv2.dilate(self._body, self._beside), np.uint8)
 
     def mark_unknown(self) -> None:
-        """What stands before a known background may be somebody."""
+        """Mark the whole foreground as a possible person."""
         if not self.background.is_new:
             known = ((self.before > 0) & (self.before != UNKNOWN)).astype(np.uint8)
             self._body = np.asarray(cv2.dilate(known, self._beside), np.uint8)
 
     def learn_background(self) -> None:
-        """Follow the background where nobody is marked."""
+        """Update the background outside the marked area."""
         self.background.learn(self._now.colour, self._body)
 
     def seed_background(self) -> None:
-        """Take what is beside the marked body for the background."""
+        """Initialise the background from the picture outside the marked body."""
         self.background.seed(self._now.colour, self._body)
 
     def person(self) -> Bytes:
-        """(h,w): 255 where somebody or dark cloth stands before the background, or nobody knows it."""
+        """(h,w): 255 on the foreground, dark cloth included, and where the background is unknown."""
         return np.where((self.before > 0) & (self.before != SHADOW), 255, 0).astype(np.uint8)
 
     def head_picture(self) -> HeadPicture:
-        """The frame as the head's tracker asks for it."""
+        """The frame as input of the head tracker."""
         if self._pixels is None:
             return HeadPicture(None)
         foreground = None
@@ -121,21 +121,21 @@ class CameraEvidence:
         return HeadPicture(self._pixels, self.offset_s, foreground)
 
     def limb_view(self, reference: Singles) -> LimbView:
-        """The evidence as the limbs' filters ask for it; reference (C,along,3): colours of the parts."""
+        """The evidence as input of the limbs' filters; reference (C,along,3): colours of the parts."""
         return LimbView(
             self.index, self.work_camera, self._now.colour, self._edges.edges, self._edges.motion, reference,
             self._occlusion,
         )  # fmt: skip
 
     def observed(self) -> RingColours:
-        """The colours of the marked parts where somebody stands before the background."""
+        """The colours of the marked parts on the foreground."""
         return observe(
             self._quads, self._depths_m, self._now.colour, self.person(), self._occlusion,
             self._params.score.hidden_by_m,
         )  # fmt: skip
 
     def share_before(self, ends_m: Floats) -> Floats:
-        """How much (C,) of each part's axis (C,2,3) [m] stands before the background, 0..1; NaN where that is not known."""
+        """The share (C,) of each part's axis (C,2,3) [m] on the foreground, 0..1; NaN without a background."""
         along = ends_m[:, :1] + _ALONG[:, None] * (ends_m[:, 1:] - ends_m[:, :1])
         xy = (project(self.camera, along.reshape(-1, 3)) + 0.5) * self._scale
         w, h = self._size_px
@@ -151,7 +151,7 @@ class CameraEvidence:
 
 
 class RigEvidence:
-    """All cameras of a rig, and the looks of the parts in each."""
+    """All cameras of a rig, and the appearance of the parts in each."""
 
     def __init__(self, rig: Rig, params: Params) -> None:
         scales = image_scales(rig.cameras, params.work_width_px)
@@ -162,17 +162,17 @@ class RigEvidence:
         self.reset()
 
     def reset(self) -> None:
-        """Forget backgrounds and looks."""
+        """Reset backgrounds and appearance."""
         for view in self.each:
             view.reset()
         self.forget_person()
 
     def forget_person(self) -> None:
-        """Forget what the person looks like."""
+        """Reset the person's appearance."""
         self.appearance = AppearanceModel.unknown(len(self.each), len(NAMES))
 
     def look(self, frames: FrameSet) -> None:
-        """Take the pictures. Raises ConfigError when one is not of its calibration's size."""
+        """Process the pictures. Raises ConfigError when a size is not the calibration's."""
         for view in self.each:
             frame = frames.frames.get(view.camera.name)
             if frame is None:
@@ -182,11 +182,11 @@ class RigEvidence:
 
     @property
     def present(self) -> Sequence[CameraEvidence]:
-        """Those that took part in the last frame set."""
+        """The cameras of the last frame set."""
         return [view for view in self.each if view.present]
 
     def share_before(self, ends_m: Floats) -> Floats:
-        """How much (C,) of each part stands before the backgrounds, the mean of cameras that tell; NaN where none does."""
+        """The share (C,) of each part on the foreground: the mean over cameras with a background; NaN without one."""
         shares = np.array([view.share_before(ends_m) for view in self.present])
         seen = np.isfinite(shares)
         total = np.where(seen, shares, 0.0).sum(axis=0)

@@ -21,7 +21,7 @@ from mocapd.types import Camera, Floats
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HangingBody:
-    """The body's points, and the way it faced when it was hung up: an angle about +Y from +Z."""
+    """The body's points, and its initial facing direction: an angle about +Y from +Z."""
 
     state: MassSpringState
     facing_rad: float

@@ -1,4 +1,4 @@
-"""A head found without a face, where heads are small or dark: that of somebody who stands before the background."""
+"""Finds the head of an upright person by the foreground, without a face: for small or dark heads."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,28 +11,28 @@ from mocapd.tracking.initialisers.stance import blobs_of, standing
 from mocapd.types import Floats
 
 _HEAD_MIDDLE = 0.935  # of the stature, above the floor
-_LOOKS = 3  # at which somebody stood in one place
+_LOOKS = 3  # with a person in one place
 _SAME_PLACE_M = 0.25
 _MOST_ERROR_PX2 = 100.0  # of each camera: blob and person agree within 10 work px
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StandingHead:
-    """middle_m (3,): the head's middle [m] as last seen; looks: how often in a row it was there."""
+    """middle_m (3,): the head's last middle [m]; looks: number of successive looks with it there."""
 
     middle_m: Floats
     looks: int
 
     @property
     def is_sure(self) -> bool:
-        """Whether it was seen often enough."""
+        """True after enough looks."""
         return self.looks >= _LOOKS
 
 
 def head_of_standing(
     views: Sequence[CameraEvidence], last: StandingHead | None, stature_m: float
 ) -> StandingHead | None:
-    """The head of whoever stands best; None where nobody does, or fewer than two cameras see them."""
+    """The head of the best upright figure; None without one, or where fewer than two cameras show it."""
     if len(views) < 2 or any(view.background.is_new for view in views):
         return None
     start = StartParams()

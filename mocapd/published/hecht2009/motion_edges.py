@@ -1,4 +1,4 @@
-"""Where somebody moves, and where outlines are: the two evidence pictures of [Hecht et al. 2009, section III].
+"""Motion and edges: the two evidence pictures of [Hecht et al. 2009, section III].
 
 All work on pictures averaged down to a work size; buffers are allocated once and overwritten.
 """
@@ -54,9 +54,9 @@ class WorkPicture:
 class MotionEdges:
     """Evidence of one camera at work size (h,w), overwritten by `fill`.
 
-    edges (h,w,3): strength, 0 far from any outline, FULL and more on a clear one that moves, less on one that is still or
-    beside it, and strength times cosine and sine of twice the gradient's angle; motion (h/4,w/4): 255 where everything
-    around changed; `difference`, `marked`, `changed`: scratch.
+    edges (h,w,3): strength (0 far from any edge, FULL and more on a clear moving one, less on a still one or near one),
+    and strength times cosine and sine of twice the gradient's angle; motion (h/4,w/4): 255 where everything around
+    changed; `difference`, `marked`, `changed`: scratch.
     """
 
     edges: NDArray[np.int16]
@@ -74,7 +74,7 @@ class MotionEdges:
         return cls(edges, small, difference, marked, changed)
 
     def fill(self, grey: Bytes, previous: Bytes | None, params: MotionEdgeParams) -> None:
-        """From the grey work picture (h,w) and the one before; None: nothing is known to move."""
+        """From the grey work picture (h,w) and the previous one; None: no motion."""
         if previous is None:
             self.difference[:] = 0
         else:

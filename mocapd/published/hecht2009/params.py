@@ -35,12 +35,12 @@ class Params:
     falloff_per_m: float = -12.0
     sure_m: float = 0.10  # spread of a point at which it teaches 1/e as much of its colour
 
-    # starting from the body that hangs from the head
-    match_edge: float = 0.45  # mean edge penalty 0..1 of the limbs that hang where somebody stands
+    # initialisation with the body that hangs from the head
+    match_edge: float = 0.45  # mean edge penalty 0..1 of hanging limbs on a person
     match_before: float = 0.6  # share of the body that stands before the background
-    # how far arms are raised sideways where they are looked for at the start: people show a T-pose, or hold hands apart
+    # sideways angles of the arms in the initial search: people show a T-pose, or hold hands apart
     raised_rad: tuple[float, ...] = (0.0, 0.2, 0.4, 0.8, 1.2, 1.57)
-    rehang_m: float = 0.3  # of the head's way from one picture to the next: somebody else's
+    rehang_m: float = 0.3  # motion of the head between two pictures that means another person
     rehang_rad: float = 0.6  # by which the face may turn from where the body was hung
 
     # losing
@@ -52,5 +52,5 @@ class Params:
     beside_px: int = 15  # about the body nothing is learned as background [work px]
     uncovered_turns: int = 10  # from one look for what was uncovered to the next
     absorb_turns: int = (
-        13  # of so many looks one learns what stands before, too, while nobody is known
+        13  # one look of so many also learns the foreground while no body is tracked
     )

@@ -1,4 +1,4 @@
-"""How far each joint may be believed, and how surely its place is known, from the spreads of the points."""
+"""Confidence and uncertainty of each joint from the spreads of the points."""
 
 import numpy as np
 
@@ -7,8 +7,8 @@ from mocapd.published.hecht2009.mass_spring.body_points import JOINT_POINTS, JOI
 from mocapd.published.hecht2009.mass_spring.frusta import NAMES
 from mocapd.types import Floats
 
-_HALF_M = 0.12  # an uncertainty that halves a confidence
-_SPRINGS_M = 0.03  # what the springs give between points that are known and those that are not
+_HALF_M = 0.12  # the uncertainty at which a confidence halves
+_SPRINGS_M = 0.03  # additional uncertainty by the springs, between measured and other points
 
 
 def _part_of_joints() -> np.ndarray:

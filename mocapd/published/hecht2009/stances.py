@@ -1,4 +1,4 @@
-"""Where limbs may be while a person begins: as they hang from the body, arms also raised to the side."""
+"""Initial limb poses: hanging, arms also raised sideways."""
 
 from collections.abc import Sequence
 

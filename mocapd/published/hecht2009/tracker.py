@@ -1,4 +1,4 @@
-"""The published tracker without a shirt: a mass-spring body hangs from a tracked head, its limbs led by particle filters.
+"""The published tracker without a shirt: a mass-spring body below a tracked head, with particle filters for the limbs.
 
 Hecht, Azad and Dillmann, Markerless Human Motion Tracking with a Flexible Model and Appearance Learning, ICRA 2009.
 """
@@ -58,8 +58,8 @@ _NEVER_S = 1e9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Known:
-    """What is carried from frame to frame while somebody is tracked. head_sd_m: of the head's place; before (11,): how much
-    of each part stands before the background; quality: 0..1."""
+    """State of a tracked person. head_sd_m: of the head's position; before (11,): each part's share on the foreground;
+    quality: 0..1."""
 
     t_ns: int
     state: MassSpringState
@@ -71,7 +71,7 @@ class _Known:
 
 
 class Hecht2009Tracker:
-    """Two calibrated cameras or more see a whole person; see `mocapd.tracking.base.Tracker` for the promises."""
+    """For two or more calibrated cameras with the whole person in view; contract: `mocapd.tracking.base.Tracker`."""
 
     name = "hecht2009"
 
@@ -95,7 +95,7 @@ class Hecht2009Tracker:
         self.reset()
 
     def reset(self, near: BodyState | None = None) -> None:
-        """Forget pose, background and appearance. near: a body that is tracked on from where it is."""
+        """Reset pose, background and appearance. near: a body to continue from."""
         self._views.reset()
         self._head.reset()
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
@@ -118,7 +118,7 @@ class Hecht2009Tracker:
         if since_s > self.params.too_old_s:
             self._hanging = self._known = None
             self._head.reset()
-            since_s = TICK_S  # nothing is known that would move over the gap
+            since_s = TICK_S  # there is no state to predict over the gap
         dt_s = float(np.clip(since_s, 1e-3, self.params.too_old_s))
         self._views.look(frames)
         self.probe("picture")
@@ -153,7 +153,7 @@ class Hecht2009Tracker:
     # --- starting ---
 
     def _or_standing(self, head: HeadTrack, dt_s: float) -> HeadTrack:
-        """The head that is tracked; or, when none is, that of somebody who stands there."""
+        """The tracked head, or else that of an upright figure."""
         if head.state is not HeadState.LOST or self._known is not None:
             self._standing = None
             return head
@@ -194,7 +194,7 @@ class Hecht2009Tracker:
         return _Known(frames.t_ns, state, clouds, head.sigma_along_m, before, 1.0 - edge, ())
 
     def _taken_over(self, near: BodyState, frames: FrameSet) -> _Known | None:
-        """Another tracker's body; what is beside it is the background. The next look confirms it or does not."""
+        """Start from another tracker's body, with the picture outside it as background. The next look tests it."""
         pose = near.pose
         if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(self.params.too_old_s):
             return None
@@ -265,7 +265,7 @@ class Hecht2009Tracker:
         )  # fmt: skip
 
     def _learn_appearance(self, clouds: dict[str, LimbCloud], dt_s: float) -> None:
-        """The running average of the parts' colours, weighed by how surely each end is known."""
+        """Update the running average of the parts' colours, weighted by the confidence of each end."""
         p, views = self.params, self._views
         if not p.score.appearance or views.appearance.is_fixed(p.appearance):
             return
@@ -294,7 +294,7 @@ class Hecht2009Tracker:
         return self._views.share_before(ends_m(self._body.frusta, points_m))
 
     def _learn_background(self) -> None:
-        """Follow the backgrounds beside the body, or everywhere when nobody is known."""
+        """Update the backgrounds outside the body, or everywhere without one."""
         known, views = self._known, self._views.present
         if known is not None:
             self._mark(known.state.points_m)
@@ -333,6 +333,6 @@ class Hecht2009Tracker:
 
 
 def _mean_known(shares: Floats) -> float:
-    """The mean of what is known (11,); 1 where nothing is."""
+    """The mean of the values (11,) that are not NaN; 1 without any."""
     known = shares[np.isfinite(shares)]
     return float(known.mean()) if len(known) else 1.0

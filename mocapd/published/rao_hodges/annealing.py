@@ -1,4 +1,4 @@
-"""The annealed particle filter, as Rao and Hodges changed that of Deutscher, Blake and Reid (CVPR 2000)."""
+"""The annealed particle filter of Deutscher, Blake and Reid (CVPR 2000) with the changes by Rao and Hodges."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ Weigh = Callable[[Floats], Floats]  # (N,D) particles to weights (N,) in 0..1
 
 
 class Selection(StrEnum):
-    """Which particles a layer hands on: the heavier half, or as many drawn in proportion to their weights."""
+    """Selection at the end of a layer: the heavier half, or as many drawn in proportion to their weights."""
 
     HEAVIEST = "heaviest"
     RANDOM = "random"

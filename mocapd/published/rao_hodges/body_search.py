@@ -1,4 +1,4 @@
-"""A whole body searched for in points of the hull by turns: the root, legs, arms, each in the points that are left."""
+"""Searches for a whole body in points of the hull, in order root, legs, arms, each in the remaining points."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,7 +21,7 @@ _BAND = (0.40, 0.85)  # of the stature: heights of the trunk
 _TOP, _BOTTOM = (
     0.75,
     0.30,
-)  # of the stature: somebody who stands reaches over the first and below the second
+)  # of the stature: an upright person reaches above the first and below the second
 _LEAST_POINTS = 60  # of a trunk
 
 
@@ -54,7 +54,7 @@ def followed(
 
 
 def _limb_weigher(chain: LimbChain, place: BodyPlace, cloud: PointCloud, converse: float) -> Weigh:
-    """The weight of a limb's particles, whose root is given."""
+    """The weight function of a limb's particles, with a fixed root."""
 
     def weigh(angles: Floats) -> Floats:
         pose = posed(chain, angles, place.root_turn, place.root_m)
@@ -92,7 +92,7 @@ def _follow_root(
 
 
 def standing_place(points_m: Floats, stature_m: float) -> Floats | None:
-    """Where (3,) on the floor somebody of this stature [m] stands upright in points (P,3); None for nobody."""
+    """Position (3,) on the floor of an upright person of this stature [m] in points (P,3); None without one."""
     heights = points_m[:, 1] / stature_m
     trunk = points_m[(heights > _BAND[0]) & (heights < _BAND[1])]
     if len(trunk) < _LEAST_POINTS:
@@ -116,11 +116,11 @@ def standing_place(points_m: Floats, stature_m: float) -> Floats | None:
 def started(
     body: BodyChains, floor_m: Floats, cloud: PointCloud, rng: np.random.Generator, params: Params
 ) -> BodyPlace:
-    """The best body that stands at a place (3,) of the floor, facing anywhere, the arms out or down."""
+    """The best body at a place (3,) of the floor, over all facing directions, with the arms out or down."""
     p = params.root
     guesses = _stances(body, floor_m, 2.0 * np.pi * np.arange(p.yaws) / p.yaws, p.raised_rad)
     place = _heaviest(body, guesses, cloud, params)
-    # straight legs on flat feet tell front from back; limbs that have moved do so less
+    # straight legs on flat feet distinguish front from back; moved limbs do so less
     careful = replace(params, converse=params.root_converse)
     for _ in range(p.refinements):
         place, _ = followed(body, place, cloud, p.refinement_dt_s, rng, careful)

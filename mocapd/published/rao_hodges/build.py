@@ -1,4 +1,4 @@
-"""Make the tracker of Rao and Hodges from what is known of rig and person."""
+"""Builds the tracker of Rao and Hodges from the calibration."""
 
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.published.rao_hodges.params import Params

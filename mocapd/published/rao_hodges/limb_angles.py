@@ -1,4 +1,4 @@
-"""The angles of limb chains from the rotations of bones: what another tracker knows of a body, or a clip of motion."""
+"""The angles of limb chains from the rotations of bones, of another tracker's body or of a clip of motion."""
 
 import numpy as np
 

@@ -48,9 +48,9 @@ class ChainArrays(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LimbChain:
-    """One or several limbs that share a root. bones (E,): whose rotation each ellipsoid has; kinds (D,): what an angle
-    is, without its side, as the tables of `limb_motion` name it; mirrored (D,): on the right side, where angles about y
-    and z have the other sign."""
+    """One or several limbs that share a root. bones (E,): the bone of each ellipsoid's rotation; kinds (D,): the angle's
+    name in the tables of `limb_motion`, without its side; mirrored (D,): on the right side, where angles about y and z
+    have the opposite sign."""
 
     name: str
     bones: tuple[str, ...]
@@ -92,7 +92,7 @@ def trunk(skeleton: Skeleton, stature_m: float) -> LimbChain:
 
 
 def whole_body(parts: Sequence[LimbChain]) -> LimbChain:
-    """Chains of one root as one chain, whose angles are theirs one after the other."""
+    """Chains of one root as one chain, with their angles concatenated."""
     ellipsoids = np.cumsum([0, *(len(part.bones) for part in parts)])
     dofs = np.cumsum([0, *(part.n_dof for part in parts)])
     each = [part.arrays for part in parts]

@@ -1,4 +1,4 @@
-"""How far each angle changes from frame to frame and how far it goes: learned by `lab.rao_hodges.learn_motion`.
+"""Largest change per frame and range of each angle, learned by `lab.rao_hodges.learn_motion`.
 
 Of 75 clips of real motion at 60 Hz, both sides together. The largest step "after discounting for the noise" is the
 99.5th percentile: what is above it are jumps between joined cuts and the flips of angles near a singularity.

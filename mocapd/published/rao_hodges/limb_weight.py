@@ -1,4 +1,4 @@
-"""How well particles of a limb match: by points in space as the paper has it, by silhouettes, and by empty ellipsoids."""
+"""Weights of a limb's particles: by points in space as in the paper, by silhouettes, and by empty ellipsoids."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -66,7 +66,7 @@ def match_points(chain: LimbChain, pose: PosedChain, cloud: PointCloud) -> Point
 
 
 def ball_samples(count: int = _SAMPLES) -> Floats:
-    """(S,3): places spread evenly over the unit ball, on a spiral whose radius grows by the cube root."""
+    """(S,3): points spread evenly over the unit ball, on a spiral with a radius growing by the cube root."""
     k = np.arange(count)
     # radii in another order than heights, so that each shell has samples all around
     radius = np.cbrt((k * 7 % count + 0.5) / count)

@@ -31,7 +31,7 @@ class Params:
     root_converse: float = 1.0
     root: RootParams = field(default_factory=RootParams)
     hull: RayHullParams = field(default_factory=RayHullParams)
-    # while nobody is followed: most of a room's points are where hardly any camera looks
+    # while no person is tracked: most of a room's points are in view of hardly any camera
     room_hull: RayHullParams = field(default_factory=lambda: RayHullParams(rays=2000, points=10000))
     background: BackgroundParams = field(default_factory=BackgroundParams)
     seed: int = 0
@@ -50,10 +50,10 @@ class Params:
     # background
     beside_px: int = 12  # about the body nothing is learned as background [work px]
     close_px: int = (
-        1  # so far beside a body that was taken over the picture is the background [work px]
+        1  # distance from an adopted body beyond which the picture is background [work px]
     )
-    least_contrast: float = (
-        1.3  # of the outline of a body that was taken over, behind which no background is known
-    )
+    least_contrast: float = 1.3  # outline contrast of an adopted body, which hides its background
     uncovered_looks: int = 10  # from one search for uncovered background to the next
-    absorb_looks: int = 13  # of so many looks one learns foreground, too, while nobody is followed
+    absorb_looks: int = (
+        13  # one look of so many also learns the foreground while no person is tracked
+    )

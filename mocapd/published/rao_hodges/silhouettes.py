@@ -1,4 +1,4 @@
-"""Silhouettes of the cameras of a rig, before backgrounds that are followed beside the body."""
+"""Silhouettes of a rig's cameras, by background models that are updated outside the body."""
 
 from collections.abc import Sequence
 
@@ -28,14 +28,14 @@ class CameraSilhouette:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the background."""
+        """Reset the background."""
         self.background.reset()
         self._before = np.zeros(self.picture.bgr.shape[:2], np.uint8)
         self._body = np.zeros_like(self._before)  # where no background is learned
         self._drawn = np.zeros_like(self._before)  # the ellipsoids of the body
 
     def renew(self, uncovered: bool) -> None:
-        """Compare the newest picture with the background; uncovered: and take for background what was uncovered."""
+        """Compare the newest picture with the background; uncovered: also move uncovered background into the model."""
         self.background.follow_light(self.picture.bgr, self._body)
         self._before = self.background.before(self.picture.bgr)
         if uncovered:
@@ -43,12 +43,12 @@ class CameraSilhouette:
             self.background.take_uncovered(self.picture.bgr, self._before, self._body, no_arms)
 
     def mask(self) -> Bytes:
-        """(h,w): 255 where somebody or a shadow is before the background, or it is not known: a hole in one silhouette is one
-        in the hull, and shadows of several cameras meet on the floor alone."""
+        """(h,w): 255 on the foreground, shadows included, and where the background is unknown. A hole in one silhouette
+        would be a hole in the hull, while shadows of several cameras intersect on the floor only."""
         return np.where(self._before != BACKGROUND, 255, 0).astype(np.uint8)
 
     def mark_body(self, places_m: Floats) -> None:
-        """Learn no background where the ellipsoids are within which these places (E,S,3) [m, world] lie, nor beside them."""
+        """Exclude a body from learning, with a margin: the ellipsoids that contain these points (E,S,3) [m, world]."""
         self._drawn[:] = 0
         camera = self.picture.camera
         h, w = self.picture.bgr.shape[:2]
@@ -60,7 +60,7 @@ class CameraSilhouette:
         self._body = np.asarray(cv2.dilate(self._drawn, self._beside), np.uint8)
 
     def mark_foreground(self, absorb: bool) -> None:
-        """Learn no background where something stands before it, as it may be somebody; absorb: learn it everywhere."""
+        """Exclude the foreground from learning, because it may be a person; absorb: learn everywhere."""
         self._body[:] = 0
         self._drawn[:] = 0
         if not absorb and not self.background.is_new:
@@ -68,7 +68,7 @@ class CameraSilhouette:
             self._body = np.asarray(cv2.dilate(known, self._beside), np.uint8)
 
     def learn(self) -> None:
-        """Follow the background where nobody is marked."""
+        """Update the background outside the excluded area."""
         self.background.learn(self.picture.bgr, self._body)
         if self._drawn.any():
             h, w = self.picture.bgr.shape[:2]
@@ -76,12 +76,12 @@ class CameraSilhouette:
             self.background.learn_unknown(self.picture.bgr, near, (0, 0, w, h))
 
     def seed(self) -> None:
-        """Take the picture beside the marked body for the background."""
+        """Initialise the background from the picture outside the marked body."""
         near = np.asarray(cv2.dilate(self._drawn, self._close), np.uint8)
         self.background.seed(self.picture.bgr, near)
 
     def edges_at_outline(self) -> tuple[float, float]:
-        """How steep the picture is along the marked body's outline, and farther outside of it."""
+        """The picture's gradient along the marked body's outline, and farther outside of it."""
         if not self._drawn.any():
             return 0.0, 0.0
         edges = brightness_edges(self.picture.bgr)
@@ -102,19 +102,19 @@ class RigSilhouettes:
         self.cameras: list[Camera] = []
 
     def reset(self) -> None:
-        """Forget the backgrounds."""
+        """Reset the backgrounds."""
         for one in self._every:
             one.reset()
 
     def look(self, frames: FrameSet) -> None:
-        """Take the pictures. Raises ConfigError when one is not of its calibration's size."""
+        """Process the pictures. Raises ConfigError when a size is not the calibration's."""
         there = self._pictures.look(frames)
         self.present = [self._every[i] for i in there]
         self.cameras = [self._cameras[i] for i in there]
 
     @property
     def are_new(self) -> bool:
-        """Whether a background is not known yet."""
+        """True while a camera has no background."""
         return any(one.background.is_new for one in self.present)
 
     def masks(self) -> Sequence[Bytes]:
@@ -127,13 +127,13 @@ class RigSilhouettes:
             one.renew(uncovered)
 
     def seed(self, places_m: Floats) -> None:
-        """Take what is beside a body's ellipsoids for the background; places_m as of `mark_body`."""
+        """Initialise the backgrounds from the pictures outside a body's ellipsoids; places_m as of `mark_body`."""
         for one in self.present:
             one.mark_body(places_m)
             one.seed()
 
     def outline_contrast(self, places_m: Floats) -> float:
-        """How much steeper the pictures are along a body's outline than beside it; about 1 where nobody is."""
+        """Ratio of the picture gradient along a body's outline to that next to it; about 1 without a person."""
         found = []
         for one in self.present:
             one.mark_body(places_m)
@@ -142,7 +142,7 @@ class RigSilhouettes:
         return float(on / max(beside, 1e-3))
 
     def learn(self, places_m: Floats | None, absorb: bool) -> None:
-        """Follow the backgrounds beside a body's ellipsoids, or beside all foreground when nobody is known."""
+        """Update the backgrounds outside a body's ellipsoids, or outside the foreground without a body."""
         for one in self.present:
             if places_m is not None:
                 one.mark_body(places_m)

@@ -84,7 +84,7 @@ class RaoHodgesTracker:
         self._rng = np.random.default_rng(self.params.seed)
         self._near = near
         self._followed: _Followed | None = None
-        self._taken_over = False  # what the body covered at first is not known then
+        self._taken_over = False  # then the background behind the adopted body is unknown
         self._looks = 0
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
@@ -117,7 +117,7 @@ class RaoHodgesTracker:
         return self._track(tracking, frames, shape)
 
     def _take_over(self, near: BodyState, frames: FrameSet) -> None:
-        """Begin from another tracker's body; what is beside it is the background. The hull confirms it or does not."""
+        """Start from another tracker's body, with the picture outside it as background. The hull tests it."""
         if near.pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(self.params.too_old_s):
             return
         place = place_of(near.pose)
@@ -183,7 +183,7 @@ class RaoHodgesTracker:
         return places
 
     def _learn(self) -> None:
-        """Follow the backgrounds beside the body, or beside all that stands before them."""
+        """Update the backgrounds outside the body, or outside the foreground."""
         known = self._followed
         absorb = self._looks % self.params.absorb_looks == 0
         self._silhouettes.learn(None if known is None else self._places(known.place), absorb)

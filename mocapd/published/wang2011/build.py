@@ -1,4 +1,4 @@
-"""Make a tracker of the published method from what is known of rig, wearer and shirt, and the pose database."""
+"""Builds a tracker of the published method from the calibration and the pose database."""
 
 from mocapd.calibration.calibration_record import Calibration, ShirtColours
 from mocapd.published.wang2011.params import Params, published

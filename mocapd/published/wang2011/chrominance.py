@@ -39,7 +39,7 @@ class Colourful:
 
 
 class HistogramSearch:
-    """Buffers for frames of one size; nothing is kept from frame to frame. One thread."""
+    """Buffers for frames of one size, without state between frames. One thread."""
 
     def __init__(self, size_px: tuple[int, int], params: HistogramParams | None = None) -> None:
         self.params = params or HistogramParams()

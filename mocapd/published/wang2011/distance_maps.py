@@ -15,7 +15,7 @@ class DistanceMaps:
     """Buffers for id maps of one size; the arrays are overwritten by each `fill`.
 
     distance_px (10,h,w) float32 [samples]; nearest_yx (10,h,w,2) int16, or (10,0,0,2) when the
-    nearest samples are not kept; scratch (h,w).
+    nearest samples are not stored; scratch (h,w).
     """
 
     distance_px: Singles

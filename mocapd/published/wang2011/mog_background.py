@@ -41,8 +41,8 @@ class BackgroundSubtractor:
     def apply(self, pixels: Bytes, learning_rate: float = -1.0) -> Bytes:
         """The mask (H >> shift, W >> shift) uint8 of `pixels` (H,W,3): 0 background, 255 foreground.
 
-        learning_rate: 0 looks without learning, 1 learns anew from this frame, negative chooses
-        by `history`. The first frame after a reset has no foreground.
+        learning_rate: 0 does not learn, 1 replaces the model by this frame, negative: automatic by
+        `history`. The first frame after a reset has no foreground.
         """
         step = 1 << self.params.shift
         small = np.ascontiguousarray(pixels[step // 2 :: step, step // 2 :: step])

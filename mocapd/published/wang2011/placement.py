@@ -49,8 +49,8 @@ class Guess:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Constraints:
-    """Patch centroids of one camera: points (K,3) of the body in the root's frame [m] and where they
-    are seen, normalised image coordinates (K,2); weight (K,)."""
+    """Patch centroids of one camera: points (K,3) of the body in the root's frame [m], their
+    observations in normalised image coordinates (K,2), and weight (K,)."""
 
     camera: Camera
     points_m: Floats

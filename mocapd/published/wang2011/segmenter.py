@@ -62,9 +62,7 @@ class Wang2011Segmenter:
         params = self.params
         mask, shift = self._background.apply(pixels), params.background.shift
         if self._body is not None:
-            mask = np.maximum(
-                mask, self._body
-            )  # a person who stands still fades into the background
+            mask = np.maximum(mask, self._body)  # a motionless person fades into the background
         if np.count_nonzero(mask) < params.min_foreground * mask.size:
             mask, shift = np.ones((1, 1), np.uint8), 31
         found = self._search.search(pixels, mask, shift)

@@ -1,4 +1,4 @@
-"""The tracker of [Wang 2011], as the paper describes it; every pose starts anew from the database."""
+"""The tracker of [Wang 2011] as in the paper; every pose starts from the database."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -55,8 +55,8 @@ _WELL_SEEN = 40.0  # samples of a joint's patches, best camera
 class Wang2011Tracker:
     """Steps 1 to 5 of section 5.2 on every frame set; see mocapd.tracking.base for the promises.
 
-    It knows nothing of the wearer's proportions and learns none: what it finds with the mean body's is
-    told of the body that it is handed.
+    It does not estimate the wearer's proportions: it solves for the mean body and returns that pose on
+    the given body.
     """
 
     name = "wang2011"

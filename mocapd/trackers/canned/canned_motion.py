@@ -1,4 +1,4 @@
-"""How the canned tracker moves."""
+"""Parameters of the canned tracker's motion."""
 
 from dataclasses import dataclass
 

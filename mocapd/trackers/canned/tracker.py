@@ -1,4 +1,4 @@
-"""The tutorial tracker: looks at no picture and replays a looping wave, for those who write clients."""
+"""The tutorial tracker: ignores the pictures and replays a looping wave, for authors of clients."""
 
 import numpy as np
 
@@ -10,11 +10,11 @@ from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.tracking.base import Probe, Track, lost_body, unprobed
 from mocapd.types import BodyState, FrameSet, Pose, Skeleton, Tracking
 
-UNCERTAINTY_M = 0.01  # such as clients get of trackers that look
+UNCERTAINTY_M = 0.01  # typical of a real tracker
 
 
 class CannedTracker:
-    """Live whenever there is a frame, whatever it shows: the pose is a pure function of its time."""
+    """Live for every frame set with a frame: the pose is a pure function of time."""
 
     name = "canned"
 
@@ -23,7 +23,7 @@ class CannedTracker:
         self.probe: Probe = unprobed
 
     def reset(self, near: BodyState | None = None) -> None:
-        """Nothing to forget, and nobody else's body to go on from."""
+        """Does nothing: the tracker has no state."""
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """The loop's pose at `frames.t_ns`; lost without any frame."""
@@ -47,7 +47,7 @@ class CannedTracker:
 
 def canned_pose(skeleton: Skeleton, motion: CannedMotion, t_ns: int) -> Pose:
     """The pose at a time: the left hand waves, the right arm swings, the hips sway and turn."""
-    # the remainder first: a float has no digits left for days of nanoseconds
+    # the remainder first: a float is too coarse for days of nanoseconds
     phase_s = seconds(t_ns % nanoseconds(motion.loop_s))
     loop = 2.0 * np.pi * phase_s / motion.loop_s
     wave = motion.waves * loop

@@ -1,12 +1,11 @@
-"""Who may have the frames' WebSocket: pages of the sites that the user has allowed, and nobody else.
+"""Access control of the frames' WebSocket: only for pages of the sites that the user has allowed.
 
-Two things are asked of them. The Origin, which a browser sends and no page can forge, is one of
-`web.allow_origins`, character by character: so no other site gets anything. The key, which
-`mocapd web-link` prints and the user gives to the page: so other users of this machine, whose programs
-can forge an Origin, get nothing either. The key opens this WebSocket and nothing else; the page's own
-token does not open it.
+It checks two things. The Origin, which no page in a browser can forge, must equal one of `web.allow_origins`: this
+excludes other sites. The key, which `mocapd web-link` prints and the user gives to the page, excludes other users of
+this machine, whose programs can forge an Origin. The key opens this WebSocket only; the page's own token does not open
+it.
 
-The key is kept, so that a page that has it goes on when mocapd starts anew.
+The key is stored, so that it stays valid after a restart of mocapd.
 """
 
 import secrets
@@ -15,8 +14,8 @@ from pathlib import Path
 
 from starlette.requests import HTTPConnection
 
-from mocapd.web.kept_key import kept_key, new_key
 from mocapd.web.refusal import Refusal
+from mocapd.web.stored_key import new_key, stored_key
 
 PATH = "/frames"
 KEY = "key"  # its name in the URL's query
@@ -32,7 +31,7 @@ class FramesAccess:
     key: str = ""
 
     def refusal(self, connection: HTTPConnection) -> Refusal | None:
-        """Why this one may not have the frames; None: it may. Its Host is looked at before."""
+        """The reason for a refusal; None: access granted. The caller checks the Host."""
         origins = connection.headers.getlist("origin")
         if len(origins) != 1 or origins[0] not in self.origins:
             return Refusal(403, "This site is not in web.allow_origins.")
@@ -44,17 +43,17 @@ class FramesAccess:
         return None
 
     def links(self, host: str) -> tuple[str, ...]:
-        """What the user opens, of each allowed site. host: of the page, with its port."""
+        """The address to open for each allowed site. host: of the page, with its port."""
         address = f"ws://{host}{PATH}?{KEY}={self.key}"
         return tuple(f"{origin}/#{FRAGMENT}={address}" for origin in self.origins)
 
 
 def frames_access(origins: tuple[str, ...], state_dir: Path | None) -> FramesAccess:
-    """For these sites, with the key that is kept in `state_dir`; None: a new one, kept nowhere.
+    """Access for these sites with the key stored in `state_dir`; None: a temporary key.
 
-    Raises InputError for a file that holds no key, CannotCreateError.
+    Raises InputError for a file without a valid key, CannotCreateError.
     """
     if not origins:
         return FramesAccess()
-    key = new_key() if state_dir is None else kept_key(state_dir / FILE_NAME)
+    key = new_key() if state_dir is None else stored_key(state_dir / FILE_NAME)
     return FramesAccess(origins, key)

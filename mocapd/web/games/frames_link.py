@@ -1,11 +1,10 @@
-"""The WebSocket `/frames`, for games in the browser: the wire's own messages as JSON, of each the `schema` says which.
+"""The WebSocket `/frames`, for games in the browser: messages of the wire as JSON, distinguished by `schema`.
 
-First `mocapd.Skeleton.Rest.v1`, and again when it changes noticeably; then `mocapd.Skeleton.v1` as often as the
-body changes, and `mocapd.Health.v1` when its `slowness` changes. All without the names of this machine, its cameras
-and outputs, which are no site's business.
+First `mocapd.Skeleton.Rest.v1`, and again when it changes noticeably; then `mocapd.Skeleton.v1` for each new body, and
+`mocapd.Health.v1` when its `slowness` changes. For privacy, without the names of this machine, its cameras and outputs.
 
-The page answers each frame with its number, {seen}: a page that is too slow for all of them skips some, and none waits
-for it in the sockets' buffers.
+Flow control: the page answers each frame with its number, {seen}. For a slow page frames are skipped, so that none
+accumulate in the sockets' buffers.
 """
 
 import asyncio
@@ -28,8 +27,8 @@ from mocapd.web.host import Host
 from mocapd.web.links.socket_link import send_json, serve, understood
 
 MOST_GAMES = 4  # of these WebSockets at once
-UNREAD = 2  # frames that are on their way to a page at once
-NOBODY = ""  # in place of the instance
+UNREAD = 2  # unacknowledged frames of one page
+ANONYMOUS = ""  # in place of the instance
 _LOOK_EVERY_S = 0.008
 _LOOK_AT_HEALTH_S = 1.0
 _LONGEST_ANSWER = 100  # [bytes]
@@ -49,10 +48,10 @@ class FramesLink:
         self._sent = self._read = 0  # frames
 
     async def run(self) -> None:
-        """Until it leaves, or says what is not understood."""
-        await serve(self._socket, self._send(), self._healths(), self._listen())
+        """Serve until the page leaves, or sends an invalid message."""
+        await serve(self._socket, self._send(), self._healths(), self._read_messages())
 
-    async def _listen(self) -> None:
+    async def _read_messages(self) -> None:
         while True:
             answer = await understood(self._socket, Seen, _LONGEST_ANSWER)
             self._read = max(self._read, min(answer.seen + 1, self._sent))
@@ -62,23 +61,23 @@ class FramesLink:
         while True:
             snapshot = self._host.snapshot()
             if snapshot is not None and slowness_text(snapshot.metrics.slowness) != said:
-                health = health_message(NOBODY, 0, 0, snapshot.metrics, {})
+                health = health_message(ANONYMOUS, 0, 0, snapshot.metrics, {})
                 said = health.slowness
                 await send_json(self._socket, msgspec.structs.replace(health, pid=0))
             await asyncio.sleep(_LOOK_AT_HEALTH_S)
 
     async def _send(self) -> None:
         newest: BodyState | None = None
-        told: Skeleton | None = None
+        sent: Skeleton | None = None
         while True:
-            found = self._host.body()
-            waited_for = self._sent - self._read >= UNREAD
-            if found is not None and found.body is not newest and not waited_for:
-                newest = found.body
-                if told is None or is_noticeable(told, found.skeleton):
-                    told = found.skeleton
-                    await send_json(self._socket, _rest(found))
-                frame = _frame(found, self._sent)
+            sample = self._host.body()
+            is_behind = self._sent - self._read >= UNREAD
+            if sample is not None and sample.body is not newest and not is_behind:
+                newest = sample.body
+                if sent is None or is_noticeable(sent, sample.skeleton):
+                    sent = sample.skeleton
+                    await send_json(self._socket, _rest(sample))
+                frame = _frame(sample, self._sent)
                 self._sent += 1
                 await send_json(self._socket, frame)
             await asyncio.sleep(_LOOK_EVERY_S)
@@ -88,7 +87,7 @@ def _frame(sample: BodySample, seq: int) -> SkeletonFrame:
     return skeleton_frame(
         replace(sample.body, cameras=()),
         sample.skeleton,
-        instance=NOBODY,
+        instance=ANONYMOUS,
         seq=seq,
         publish_monotonic_ns=monotonic_ns(),
         unix_from_monotonic_ns=unix_from_monotonic_ns(),
@@ -97,4 +96,4 @@ def _frame(sample: BodySample, seq: int) -> SkeletonFrame:
 
 def _rest(sample: BodySample) -> RestSkeleton:
     stature_m = sample.track.shape.stature_m
-    return rest_skeleton(sample.skeleton, instance=NOBODY, stature_m=stature_m)
+    return rest_skeleton(sample.skeleton, instance=ANONYMOUS, stature_m=stature_m)

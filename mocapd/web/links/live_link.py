@@ -1,7 +1,7 @@
-"""The WebSocket `/live`: the body as often as it changes, figures once a second, while one looks.
+"""The WebSocket `/live`: each new body, and figures once a second.
 
-See live_json for what is sent. From the page: {watch}: false when it is hidden, and then only the
-figures come, so that its plots have no gap.
+See live_json for the messages. From the page: {watch}: false when it is hidden; then it gets the
+figures only, so that its plots have no gap.
 """
 
 import asyncio
@@ -35,7 +35,7 @@ class LiveLink:
 
     async def run(self) -> None:
         """Until the window leaves."""
-        await serve(self._socket, self._figures(), self._bodies(), self._listen())
+        await serve(self._socket, self._figures(), self._bodies(), self._read_messages())
 
     async def _figures(self) -> None:
         while True:
@@ -58,7 +58,7 @@ class LiveLink:
                 await send_json(self._socket, body_json(body))
             await asyncio.sleep(1.0 / MOST_HZ)
 
-    async def _listen(self) -> None:
+    async def _read_messages(self) -> None:
         while True:
             if (await understood(self._socket, Watch)).watch:
                 self._watched.set()
@@ -67,6 +67,6 @@ class LiveLink:
 
 
 def _differ(one: _Scene, other: _Scene) -> bool:
-    """Skeletons of other lengths are the same to the page: it draws joints."""
+    """Ignores bone lengths: the page draws joints."""
     names, parents = (s[2].names if s[2] else None for s in (one, other))
     return one[0] != other[0] or one[1] is not other[1] or names != parents

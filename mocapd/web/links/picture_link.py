@@ -1,7 +1,7 @@
-"""The WebSocket `/pictures`: the page asks for each picture, so a slow page is never flooded.
+"""The WebSocket `/pictures`: the page requests each picture, so a slow page is never flooded.
 
 PictureRequest, JSON: {camera, width, after, over}: width in px of the screen; after: `seq` of the last picture
-it got, null at first; over: what is drawn over it, `setup` (when one is on) or `body`. Answer, one
+it got, null at first; over: the overlay, `setup` (during a setup) or `body`. Answer, one
 binary message: uint32 (little-endian) length of the header, the header {camera, seq, t_ns, size_px,
 shapes} as JSON, the JPEG. No new frame within a second: `seq` is null, `why` says the reason, and
 there is no JPEG.
@@ -25,12 +25,12 @@ from mocapd.wizard.step_names import StepName
 
 DEFAULT_WIDTH_PX = 480
 MOST_UNDER_WAY = 32  # of one page
-LONGEST_NAME = 4096  # of a camera; the longest that anybody has tried has 3000 characters
+LONGEST_NAME = 4096  # of a camera; the longest name in our tests has 3000 characters
 MOST_FRAMES = 2**63 - 1
 
 
 class PictureRequest(msgspec.Struct, frozen=True):
-    """What a page asks for."""
+    """A page's request."""
 
     camera: Annotated[str, Meta(max_length=LONGEST_NAME)]
     width: Annotated[int, Meta(ge=1, le=8192)] = DEFAULT_WIDTH_PX
@@ -39,12 +39,12 @@ class PictureRequest(msgspec.Struct, frozen=True):
 
 
 async def picture_link(socket: WebSocket, host: Host, encoder: PictureEncoder) -> None:
-    """Answer requests until the page leaves. Several may be under way, one for each camera."""
+    """Answer requests until the page leaves; several at once, one for each camera."""
 
     async def answers() -> None:
         under_way = 0
 
-        def ended(_task: asyncio.Task[None]) -> None:
+        def on_done(_task: asyncio.Task[None]) -> None:
             nonlocal under_way
             under_way -= 1
 
@@ -54,7 +54,9 @@ async def picture_link(socket: WebSocket, host: Host, encoder: PictureEncoder) -
                 if under_way >= MOST_UNDER_WAY:
                     raise BadMessageError("more requests than cameras")
                 under_way += 1
-                group.create_task(_answer(socket, host, encoder, request)).add_done_callback(ended)
+                group.create_task(_answer(socket, host, encoder, request)).add_done_callback(
+                    on_done
+                )
 
     await serve(socket, answers())
 
@@ -80,22 +82,22 @@ async def _answer(
 
 
 def shows_body(host: Host, over: str) -> bool:
-    """Whether the body is drawn: in the live view, and in the setup's step Check."""
+    """True if the body is drawn: in the live view, and in the setup's step Check."""
     wizard = host.wizard if over == "setup" else None
     return wizard is None or wizard.view().step is StepName.CHECK
 
 
 def shapes_over(host: Host, picture: Picture, with_body: bool) -> tuple[Shape, ...]:
-    """The body as it was tracked in this picture, nothing where it was not; without the body what the setup's step draws."""
+    """The shapes of the body tracked in this picture, if any; without the body the overlays of the setup's step."""
     wizard = host.wizard
     if not with_body:
         view = None if wizard is None else wizard.view().view
         return () if view is None else view.overlays.get(picture.camera, ())
-    rig, found = host.rig, picture.body
+    rig, sample = host.rig, picture.body
     cameras = {camera.name: camera for camera in rig.cameras} if rig is not None else {}
-    if found is None or picture.camera not in cameras:
+    if sample is None or picture.camera not in cameras:
         return ()
-    return bone_shapes(cameras[picture.camera], found.body, found.skeleton)
+    return bone_shapes(cameras[picture.camera], sample.body, sample.skeleton)
 
 
 def message(header: object, jpeg: bytes) -> bytes:
@@ -105,7 +107,7 @@ def message(header: object, jpeg: bytes) -> bytes:
 
 
 def shapes_json(shapes: Iterable[Shape]) -> list[dict[str, object]]:
-    """As the page takes them; a tenth of a pixel is enough."""
+    """The shapes in the page's format, rounded to a tenth of a pixel."""
     return [
         {
             "kind": shape.kind,

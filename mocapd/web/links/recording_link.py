@@ -1,9 +1,8 @@
 """The WebSocket `/recording`: every picture of every camera, for `mocapd record --pictures`.
 
-Messages as those of `/pictures`: length of the header, the header as JSON, bytes. First the files that say what is
-known of cameras and wearer, {file, media_type}; then each picture, {camera, seq, unix_ns, dropped} and its JPEG as
-the camera delivered it; where it delivered none that can be shown, one is made. dropped: pictures that the other
-side was too slow for, since the beginning.
+Messages as those of `/pictures`: length of the header, the header as JSON, bytes. First the files with the set-up of
+cameras and wearer, {file, media_type}; then each picture, {camera, seq, unix_ns, dropped} and the camera's own JPEG, or
+else a new one. dropped: pictures that the recorder was too slow for, since the beginning.
 """
 
 import asyncio
@@ -17,10 +16,10 @@ from mocapd.capture.recording.recorded_known import attachments_of
 from mocapd.clock import unix_from_monotonic_ns
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Frame
-from mocapd.web.encoder import Picture, delivered, encode
+from mocapd.web.encoder import Picture, camera_jpeg, encode
 from mocapd.web.host import Host
 from mocapd.web.links.picture_link import message
-from mocapd.web.links.socket_link import BadMessageError, received, send_bytes, serve
+from mocapd.web.links.socket_link import BadMessageError, receive, send_bytes, serve
 
 MOST_WAITING = 24  # pictures of all cameras: a third of a second of two
 RECORDED_QUALITY = 95  # of a picture that no camera has encoded
@@ -28,7 +27,7 @@ _LOOK_EVERY_S = 0.008
 
 
 class _Taken:
-    """Keeps pictures for the link's event loop. `put` in the capture threads."""
+    """Queue of pictures for the link's event loop. `put` in the capture threads."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()  # guards what follows
@@ -36,32 +35,32 @@ class _Taken:
         self.dropped = 0
 
     def put(self, frame: Frame) -> None:
-        # a JPEG without its pixels is a tenth of them
-        one = delivered(frame, _width(frame)) or frame
+        # a JPEG takes a tenth of the memory of its pixels
+        picture = camera_jpeg(frame, _width(frame)) or frame
         with self._lock:
             if len(self._waiting) >= MOST_WAITING:
                 self._waiting.popleft()
                 self.dropped += 1
-            self._waiting.append(one)
+            self._waiting.append(picture)
 
     def next(self) -> Picture | Frame | None:
-        """A frame where its camera delivered no JPEG that can be shown."""
+        """The oldest one; a Frame where its camera delivered no usable JPEG."""
         with self._lock:
             return self._waiting.popleft() if self._waiting else None
 
 
 class RecordingLink:
-    """One recorder; pictures are made in `executor` where none were delivered."""
+    """One recorder; frames without a JPEG are encoded in `executor`."""
 
     def __init__(self, socket: WebSocket, host: Host, executor: Executor) -> None:
         self._socket, self._host, self._executor = socket, host, executor
 
     async def run(self) -> None:
         """Until the recorder leaves."""
-        await serve(self._socket, self._send(), self._listen())
+        await serve(self._socket, self._send(), self._read_messages())
 
-    async def _listen(self) -> None:
-        await received(self._socket)
+    async def _read_messages(self) -> None:
+        await receive(self._socket)
         raise BadMessageError("nothing is to be said here")
 
     async def _send(self) -> None:
@@ -73,7 +72,9 @@ class RecordingLink:
         taken, hub = _Taken(), None
         try:
             while True:
-                hub = _joined(taken, hub, self._host.hub)  # another session has cameras of its own
+                hub = _switch_hub(
+                    taken, hub, self._host.hub
+                )  # another session has cameras of its own
                 picture = taken.next()
                 if picture is None:
                     await asyncio.sleep(_LOOK_EVERY_S)
@@ -84,7 +85,7 @@ class RecordingLink:
                     )
                 await send_bytes(self._socket, _message(picture, taken.dropped))
         finally:
-            _joined(taken, hub, None)
+            _switch_hub(taken, hub, None)
 
 
 def _width(frame: Frame) -> int:
@@ -102,8 +103,8 @@ def _message(picture: Picture, dropped: int) -> bytes:
     return message(header, picture.jpeg)
 
 
-def _joined(taken: _Taken, old: FrameHub | None, new: FrameHub | None) -> FrameHub | None:
-    """The new hub, which has it from now on and not the old one."""
+def _switch_hub(taken: _Taken, old: FrameHub | None, new: FrameHub | None) -> FrameHub | None:
+    """Subscribe the queue to the new hub instead of the old one; returns the new hub."""
     if new is not old:
         if old is not None:
             old.leave(taken)

@@ -1,4 +1,4 @@
-"""What all WebSockets of the page share."""
+"""Common functions of the page's WebSockets."""
 
 import asyncio
 from collections.abc import Awaitable, Coroutine, Iterable, Iterator
@@ -17,14 +17,14 @@ LONGEST_MESSAGE = 8 << 20  # strokes come as PNG in base64 [bytes]
 _WS_BAD_DATA = 1007
 _WS_GONE = 1006
 _LONGEST_REASON = 120  # of a closed WebSocket; its frame holds 123 [bytes]
-MOST_HZ = 15.0  # how often anything is sent to a page
+MOST_HZ = 15.0  # highest rate of messages to a page
 
 
 class BadMessageError(Exception):
-    """A page said something that is not understood: one of another version, or no page at all."""
+    """An invalid message, perhaps of a page of another version."""
 
 
-async def received(socket: WebSocket) -> str | bytes:
+async def receive(socket: WebSocket) -> str | bytes:
     """The next message, text or binary. Raises WebSocketDisconnect."""
     message = await socket.receive()
     if message["type"] == "websocket.disconnect":
@@ -36,7 +36,7 @@ async def received(socket: WebSocket) -> str | bytes:
 
 async def understood(socket: WebSocket, kind: type[T], longest: int = LONGEST_MESSAGE) -> T:
     """The next message as `kind`, of at most `longest` bytes. Raises WebSocketDisconnect or BadMessageError."""
-    said = await received(socket)
+    said = await receive(socket)
     if len(said) > longest:
         raise BadMessageError("that is too much")
     try:
@@ -56,8 +56,8 @@ async def send_bytes(socket: WebSocket, message: bytes) -> None:
 
 
 async def _sent(sending: Awaitable[None]) -> None:
-    """A socket may be closed already, by another job of ours or by uvicorn for a message that is too
-    long; both libraries call a message after that a mistake. It is a page that has left."""
+    """Another task of ours, or uvicorn after an oversized message, may have closed the socket already. Both libraries
+    then raise RuntimeError, which means here that the page has left."""
     try:
         await sending
     except RuntimeError as closed:
@@ -65,7 +65,7 @@ async def _sent(sending: Awaitable[None]) -> None:
 
 
 async def serve(socket: WebSocket, *jobs: Coroutine[object, object, None]) -> None:
-    """Accept, and run these until the first ends, mostly because the browser has left."""
+    """Accept, and run these jobs until the first ends, mostly because the browser has left."""
     await socket.accept()
     tasks = [asyncio.ensure_future(job) for job in jobs]
     try:
@@ -76,7 +76,7 @@ async def serve(socket: WebSocket, *jobs: Coroutine[object, object, None]) -> No
         ended = await asyncio.gather(*tasks, return_exceptions=True)
     for error in _leaves(ended):
         if isinstance(error, BadMessageError):
-            # only now: nothing may be sent any more by the other jobs
+            # only now: no other job sends any more
             with suppress(WebSocketDisconnect):
                 reason = str(error).encode()[:_LONGEST_REASON].decode(errors="ignore")
                 await _sent(socket.close(_WS_BAD_DATA, reason))

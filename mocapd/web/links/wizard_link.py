@@ -1,6 +1,6 @@
-"""The WebSocket `/ws`: what the setup shows goes to the page when it changes, commands come back.
+"""The WebSocket `/ws`: sends the setup's state to the page on change, and receives its commands.
 
-To the page, JSON: {setup: false, cameras, driver, refused} when no setup is going on, else {setup:
+To the page, JSON: {setup: false, cameras, driver, refused} without a setup, else {setup:
 true, serial, step, steps, done, view: {state, sentence, progress, problems, details}, refused, saved,
 ended, driver, cameras}. From the page: {verb, args}; `take_over` is answered here, `begin` begins a
 setup, the rest is the wizard's.
@@ -16,9 +16,9 @@ from starlette.websockets import WebSocket
 
 from mocapd.boundary.parsing import decode_json
 from mocapd.errors import MalformedError, MocapdError, Problem
+from mocapd.web.editor_lease import EditorLease
 from mocapd.web.host import Host
-from mocapd.web.links.socket_link import MOST_HZ, received, send_json, serve
-from mocapd.web.seat import Seat
+from mocapd.web.links.socket_link import MOST_HZ, receive, send_json, serve
 from mocapd.web.shown_json import as_json
 from mocapd.wizard.wizard_view import WizardView
 
@@ -28,7 +28,7 @@ NOT_THE_DRIVER = Problem(
 
 
 class PageCommand(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a person did on the page."""
+    """A user's action on the page."""
 
     verb: Annotated[str, Meta(max_length=100)]
     args: dict[str, object] = {}
@@ -37,17 +37,17 @@ class PageCommand(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class WizardLink:
     """One browser window."""
 
-    def __init__(self, socket: WebSocket, host: Host, seat: Seat) -> None:
-        self._socket, self._host, self._seat = socket, host, seat
-        self._refused: Problem | None = None  # by us, not by the wizard
+    def __init__(self, socket: WebSocket, host: Host, lease: EditorLease) -> None:
+        self._socket, self._host, self._lease = socket, host, lease
+        self._refused: Problem | None = None  # by this link, not by the wizard
 
     async def run(self) -> None:
         """Until the window leaves."""
-        self._seat.join(self)
+        self._lease.join(self)
         try:
             await serve(self._socket, self._show(), self._obey())
         finally:
-            self._seat.leave(self, asyncio.get_running_loop().time())
+            self._lease.leave(self, asyncio.get_running_loop().time())
 
     async def _show(self) -> None:
         last = b""
@@ -64,7 +64,7 @@ class WizardLink:
         message: dict[str, object] = {"setup": False}
         if wizard is not None:
             message = view_json(wizard.view())
-        message["driver"] = self._seat.drives(self, asyncio.get_running_loop().time())
+        message["driver"] = self._lease.drives(self, asyncio.get_running_loop().time())
         message["cameras"] = list(hub.names) if hub is not None else []
         if self._refused is not None or wizard is None:
             message["refused"] = self._refused and asdict(self._refused)
@@ -72,7 +72,7 @@ class WizardLink:
 
     async def _obey(self) -> None:
         while True:
-            text = await received(self._socket)
+            text = await receive(self._socket)
             try:
                 command = decode_json(text, PageCommand)
             except MalformedError as error:
@@ -84,10 +84,10 @@ class WizardLink:
     async def _take(self, command: PageCommand) -> None:
         begins = command.verb == "begin" and self._host.wizard is None
         if begins or command.verb == "take_over":
-            self._seat.take_over(self)
+            self._lease.take_over(self)
         if command.verb == "take_over":
             return
-        if not self._seat.drives(self, asyncio.get_running_loop().time()):
+        if not self._lease.drives(self, asyncio.get_running_loop().time()):
             self._refused = NOT_THE_DRIVER
         elif command.verb == "begin":
             try:
@@ -99,7 +99,7 @@ class WizardLink:
 
 
 def view_json(shown: WizardView) -> dict[str, object]:
-    """What the page shows of the setup, without what depends on the window."""
+    """The setup's state for the page, without the parts that depend on the window."""
     view = shown.view
     return {
         "setup": True,

@@ -21,7 +21,7 @@ from mocapd.cli.send_test import send_test_command
 from mocapd.clock import nanoseconds
 from mocapd.errors import UnavailableError, UsageError
 from mocapd.outputs import output_table, wire
-from mocapd.outputs.aim import resolved
+from mocapd.outputs.address_override import resolve_host
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.output_table import (
     OUTPUTS,
@@ -186,11 +186,11 @@ def test_a_name_is_looked_up_once_and_ipv4_preferred(monkeypatch: pytest.MonkeyP
         (socket.AF_INET, socket.SOCK_DGRAM, 17, "", ("192.168.1.7", 0)),
     ]
     monkeypatch.setattr(socket, "getaddrinfo", lambda *_, **__: both)
-    assert resolved("quest") == "192.168.1.7"
-    assert resolved("10.0.0.3") == "10.0.0.3"
+    assert resolve_host("quest") == "192.168.1.7"
+    assert resolve_host("10.0.0.3") == "10.0.0.3"
     monkeypatch.undo()
-    with pytest.raises(UnavailableError, match="no address is known"):
-        resolved("a" * 70 + "." * 2)
+    with pytest.raises(UnavailableError, match="has no address"):
+        resolve_host("a" * 70 + "." * 2)
 
 
 @pytest.mark.parametrize(
@@ -212,7 +212,7 @@ def test_host_and_port_take_the_place_of_what_is_configured(
     port: int | None,
     expected: dict[str, object],
 ) -> None:
-    aimed = OUTPUTS[output].aimed(section, host, port)
+    aimed = OUTPUTS[output].override_address(section, host, port)
     assert {name: getattr(aimed, name) for name in expected} == expected
 
 

@@ -57,10 +57,10 @@ def write_session(path: Path, frames: list[SkeletonFrame]) -> Path:
     """As `mocapd record` writes it."""
     rest = rest_skeleton(World(demo_scenario()).skeleton, instance="pc", stature_m=1.75)
     with RecordingWriter(path, RecordingParams(foxglove_hz=0.0), 0) as writer:
-        writer.tell(rest, frames[0].capture_unix_ns)
+        writer.add_state(rest, frames[0].capture_unix_ns)
         for frame in frames:
             writer.frame(frame)
-            writer.beat(frame.capture_unix_ns)
+            writer.flush_if_due(frame.capture_unix_ns)
     return path
 
 

@@ -99,7 +99,7 @@ def test_a_stream_that_stops_is_said(running: Running, stream: LiveStream) -> No
 
 
 def test_a_daemon_that_is_too_slow_is_said(running: Running, stream: LiveStream) -> None:
-    running.sink.tell(
+    running.sink.send_state(
         msgspec.structs.replace(HEALTH, slowness="too slow: 95 % -- close other programs")
     )
     running.sink.send(_seen_now())
@@ -110,7 +110,7 @@ def test_a_daemon_that_is_too_slow_is_said(running: Running, stream: LiveStream)
         return stream.state().slow.startswith("too slow")
 
     assert eventually(said)
-    running.sink.tell(HEALTH)
+    running.sink.send_state(HEALTH)
     assert eventually(lambda: not said())
 
 

@@ -41,7 +41,7 @@ class KeepingSink:
             raise self.error
         self.got.append(frame)
 
-    def tell(self, message: StateMessage) -> None:
+    def send_state(self, message: StateMessage) -> None:
         self.told.append(message)
 
     def status(self) -> SinkStatus:
@@ -115,7 +115,7 @@ def test_nothing_is_said_when_nothing_is_known() -> None:
 def test_states_go_through_and_it_ends_with_its_sink() -> None:
     kept = KeepingSink()
     sink = PredictedSink(kept, RATE_HZ, 0.0)
-    sink.tell(HEALTH)
+    sink.send_state(HEALTH)
     sink.open()
     sink.close()
     sink.close()

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from mocapd.outputs.prediction.trend import step_shares
+from mocapd.outputs.prediction.extrapolation_weights import step_weights
 
 RATES_HZ = (15.0, 30.0, 60.0, 90.0)
 
 
 def moved(ages_s: list[float], ahead_s: float, x: np.ndarray) -> float:
     """What is predicted of a value x at these ages, newest first."""
-    return float(np.dot(step_shares(ages_s, ahead_s), x[:-1] - x[1:]))
+    return float(np.dot(step_weights(ages_s, ahead_s), x[:-1] - x[1:]))
 
 
 @pytest.mark.parametrize("rate_hz", RATES_HZ)
@@ -41,5 +41,5 @@ def test_frames_need_not_come_evenly() -> None:
 
 
 def test_nothing_is_known_of_a_single_frame() -> None:
-    assert step_shares([0.0], 0.05) == []
+    assert step_weights([0.0], 0.05) == []
     assert moved([0.0, 0.033, 0.066], 0.0, np.array([3.0, 2.0, 1.0])) == 0.0

@@ -10,8 +10,8 @@ from mocapd.body.skeleton import INDEX, joint_positions
 from mocapd.geometry import rotations
 from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.from_skeleton import rest_skeleton
-from mocapd.outputs.vmc.placing import placing
 from mocapd.outputs.vmc.vmc_encoder import VmcEncoder
+from mocapd.outputs.vmc.vmc_space import vmc_heading
 from mocapd.types import Floats, Pose
 from tests.outputs.frames import left_hand_up
 from tests.outputs.receivers.slimevr import SlimevrInput
@@ -32,7 +32,7 @@ def test_the_yaw_of_hips_and_chest_is_that_of_the_body(after_s: float) -> None:
     body, skeleton = left_hand_up()
     assert body.pose is not None
     encoder, receiver = (
-        VmcEncoder(placing(0.0, 0.0, by_root=False), False, "one", None),
+        VmcEncoder(vmc_heading(0.0, 0.0, by_root=False), False, "one", None),
         SlimevrInput(),
     )
     rest = rest_skeleton(skeleton, instance="pc", stature_m=1.75)

@@ -11,8 +11,8 @@ from mocapd.body.bones import PARENT_OF
 from mocapd.body.skeleton import standard_skeleton
 from mocapd.outputs.from_skeleton import rest_skeleton
 from mocapd.outputs.messages import RestSkeleton
-from mocapd.outputs.vmc.placing import placing
 from mocapd.outputs.vmc.vmc_encoder import LEAF_CONFIDENCE, VmcEncoder
+from mocapd.outputs.vmc.vmc_space import vmc_heading
 from mocapd.outputs.wire import Joint, SkeletonFrame
 from tests.golden import stepping_left
 from tests.outputs.receivers.evmc4u import Evmc4u
@@ -24,7 +24,7 @@ LOST = msgspec.structs.replace(FRAME, tracking="lost", joints={})
 
 
 def encoder(mirror: bool = False) -> VmcEncoder:
-    return VmcEncoder(placing(0.0, 0.0, by_root=False), mirror, "two", None)
+    return VmcEncoder(vmc_heading(0.0, 0.0, by_root=False), mirror, "two", None)
 
 
 def sent(to: VmcEncoder, frame: SkeletonFrame, rest: RestSkeleton | None = REST) -> list[bytes]:

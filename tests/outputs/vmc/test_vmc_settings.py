@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mocapd.outputs.vmc.bone_names import is_leaf, other_side, unity_name, vrm1_name
-from mocapd.outputs.vmc.placing import placing
 from mocapd.outputs.vmc.vmc_encoder import VmcEncoder
+from mocapd.outputs.vmc.vmc_space import vmc_heading
 from mocapd.types import Floats
 from tests.golden import stepping_left
 from tests.outputs.receivers.godot_xr_vmc_tracker import GodotXrVmcTracker
@@ -23,7 +23,7 @@ def truth() -> dict[str, Floats]:
 def sent(
     turn_deg: float = 0.0, yaw_deg: float = 0.0, by_root: bool = False, mirror: bool = False
 ) -> list[bytearray]:
-    encoder = VmcEncoder(placing(turn_deg, yaw_deg, by_root), mirror, "two", None)
+    encoder = VmcEncoder(vmc_heading(turn_deg, yaw_deg, by_root), mirror, "two", None)
     return encoder.encode(stepping_left.frame(), stepping_left.rest(), calibration=3, time_s=0.0)
 
 

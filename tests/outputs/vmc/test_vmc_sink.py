@@ -54,7 +54,7 @@ def receiver(stack: ExitStack, port: int) -> socket.socket:
 def running(stack: ExitStack, params: Params, clock: Clock | None = None) -> VmcSink:
     sink = VmcSink(params, clock or Clock())
     stack.callback(sink.close)
-    sink.tell(REST)  # also before it is open
+    sink.send_state(REST)  # also before it is open
     sink.open()
     return sink
 
@@ -95,7 +95,7 @@ def test_one_socket_for_life_whatever_is_sent(sockets: ExitStack) -> None:
     lost = msgspec.structs.replace(FRAME, tracking="lost", joints={})
     for frame in (lost, FRAME, lost, FRAME):
         sink.send(frame)
-        sink.tell(msgspec.structs.replace(REST, stature_m=1.8))
+        sink.send_state(msgspec.structs.replace(REST, stature_m=1.8))
     assert len({listening.recvfrom(4000)[1] for _ in range(4)}) == 1
 
 
@@ -122,7 +122,7 @@ def test_calibrated_is_said_as_soon_as_it_is_known(sockets: ExitStack) -> None:
     told = []
     for cameras in (None, (CAMERA,), ()):
         if cameras is not None:
-            sink.tell(CalibrationInfo("pc", "rig.json", cameras))
+            sink.send_state(CalibrationInfo("pc", "rig.json", cameras))
         sink.send(FRAME)
         told.append(values(listening.recv(4000), "/VMC/Ext/OK"))
     assert told == [[1, 0, 0, 1], [1, 3, 0, 1], [1, 0, 0, 1]]
@@ -136,7 +136,7 @@ def test_each_person_has_a_port(sockets: ExitStack) -> None:
         **FRAME.joints,
         "hips": msgspec.structs.replace(FRAME.joints["hips"], p=(5.0, 1.0, 0.0)),
     }
-    sink.tell(msgspec.structs.replace(REST, person=2))
+    sink.send_state(msgspec.structs.replace(REST, person=2))
     for _ in range(2):
         sink.send(FRAME)
         sink.send(msgspec.structs.replace(FRAME, person=2, joints=moved))

@@ -15,8 +15,8 @@ from mocapd.body.bones import NAMES
 from mocapd.config.effective import load_config
 from mocapd.errors import InputError
 from mocapd.geometry import rotations
-from mocapd.outputs.vmc.placing import placing
 from mocapd.outputs.vmc.vmc_encoder import VmcEncoder
+from mocapd.outputs.vmc.vmc_space import vmc_heading
 from mocapd.outputs.vmc.vrm_file import MOST_JSON_BYTES, read_vrm
 from mocapd.types import Floats
 from tests.golden import stepping_left
@@ -63,7 +63,7 @@ MODELS = {
 
 def sent(path: Path, mirror: bool = False, turn_deg: float = 0.0) -> dict[str, Transform]:
     """What is told of each bone, by Unity's name."""
-    where = placing(turn_deg, 0.0, by_root=False)
+    where = vmc_heading(turn_deg, 0.0, by_root=False)
     encoder = VmcEncoder(where, mirror, "one", read_vrm(path))
     (datagram,) = encoder.encode(FRAME, REST, calibration=3, time_s=0.0)
     out: dict[str, Transform] = {}

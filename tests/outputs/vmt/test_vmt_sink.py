@@ -103,7 +103,7 @@ def test_a_recentre_makes_where_the_person_looks_forward(line: Line, yaw_deg: fl
     line.open()
     line.send(stepping_left(yaw_deg=yaw_deg))
     assert line.heading_deg() == pytest.approx(yaw_deg, abs=1e-3)
-    line.sink.tell(RECENTRED)
+    line.sink.send_state(RECENTRED)
     line.send(stepping_left(live=False, now_ns=STEP_NS))  # the wish waits for somebody
     line.send(stepping_left(yaw_deg=yaw_deg, now_ns=2 * STEP_NS))
     assert line.heading_deg() == pytest.approx(0.0, abs=3.0)  # head and hips are not quite one

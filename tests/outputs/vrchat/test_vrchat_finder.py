@@ -61,7 +61,7 @@ def test_frames_go_to_where_vrchat_is_and_follow_it(
         sink.send(stepping_left(now_ns=number * NS_PER_S))
         return VRChatReceiver().take(one.listening.recv(2000), float(number))
 
-    sink.tell(Facing("pc", 0, 0.0, 0))  # waits until there is somebody to be told
+    sink.send_state(Facing("pc", 0, 0.0, 0))  # waits until there is somebody to be told
     sink.send(stepping_left())
     assert (sink.status().refused, sink.status().listeners) == (1, 0)
     assert eventually(lambda: "looking for VRChat" in sink.status().detail)

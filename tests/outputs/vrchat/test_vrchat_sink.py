@@ -148,7 +148,7 @@ def test_a_tracker_ends_where_its_bone_is_hidden_and_does_not_flicker(line: Line
 def test_of_a_lost_person_nothing_is_sent(line: Line) -> None:
     line.open()
     assert line.send(stepping_left(live=False)) == []
-    line.sink.tell(RECENTRED)
+    line.sink.send_state(RECENTRED)
     assert line.send(stepping_left(live=False, now_ns=NS_PER_S)) == []
     # the wish waits until somebody is there
     assert "head/rotation" in line.send(stepping_left(now_ns=2 * NS_PER_S))
@@ -162,7 +162,7 @@ def test_a_recentre_turns_the_body_to_the_headset_at_once(line: Line, yaw_deg: f
         now_ns += NS_PER_S // 30
         frame = stepping_left(yaw_deg=yaw_deg, head_yaw_deg=15.0, now_ns=now_ns)
         assert "head/rotation" not in line.send(frame)
-    line.sink.tell(RECENTRED)
+    line.sink.send_state(RECENTRED)
     to_left = 0.0
     for number in range(30):
         now_ns += NS_PER_S // 30
@@ -192,7 +192,7 @@ def test_after_a_recentre_the_person_faces_forward_or_by_the_yaw_that_is_set(lin
         forward = line.vrchat.tracker(1).rotation @ [0.0, 0.0, 1.0]
         to_left = np.radians(100.0 + own_deg)
         assert forward == pytest.approx([-np.sin(to_left), 0.0, np.cos(to_left)], abs=1e-4)
-        line.sink.tell(RECENTRED)
+        line.sink.send_state(RECENTRED)
         line.send(after)
         forward = line.vrchat.tracker(1).rotation @ [0.0, 0.0, 1.0]
         to_left = np.radians(own_deg) + head_to_hip
@@ -204,7 +204,7 @@ def test_recentres_in_a_hurry_keep_the_silence_that_lets_vrchat_snap(line: Line)
     line.open()
     turned_s = []
     for number in range(60):
-        line.sink.tell(RECENTRED)
+        line.sink.send_state(RECENTRED)
         now_ns = number * NS_PER_S // 30
         if "head/rotation" in line.send(stepping_left(yaw_deg=3.0 * number, now_ns=now_ns)):
             turned_s.append(now_ns / NS_PER_S)
@@ -215,7 +215,7 @@ def test_recentres_in_a_hurry_keep_the_silence_that_lets_vrchat_snap(line: Line)
 
 def test_a_head_that_only_follows_is_taken_from_the_chest(line: Line) -> None:
     line.open(trackers=("hip",))
-    line.sink.tell(RECENTRED)
+    line.sink.send_state(RECENTRED)
     line.send(stepping_left(yaw_deg=40.0, head_yaw_deg=80.0, confidence=known_but(0.4, "head")))
     forward = line.vrchat.tracker(1).rotation @ [0.0, 0.0, 1.0]
     assert forward == pytest.approx([0.0, 0.0, 1.0], abs=0.02)

@@ -22,12 +22,12 @@ class LimbScoreParams:
     by_size: bool = True
     # of a folded limb the nearer part hides the farther; off: [Hecht 2009]
     folds: bool = True
-    # What a hidden sample is charged: what seen ones of that limb usually are, and more. The usual differs from limb
-    # to limb (medians over true poses in six captures: edges of arms 0.16, of legs 0.23; surfaces 0.49 and 0.14), so
-    # that no fixed value is fair to all. As many true poses are above as poses 20 cm off are below a penalty 0.07 to
-    # 0.10 above that median. But a filter follows the best of many particles, and the best of those that show half
-    # of themselves is better than usual: with 0.07 limbs hid or pointed at the camera, with 0.15 they did so the
-    # least (arms of a wide pair 9 cm instead of 32), with 0.25 and more hidden ones came out.
+    # Penalty of a hidden sample, in addition to the limb's median penalty of visible samples. The median differs from
+    # limb to limb (over true poses in six captures: edges of arms 0.16, of legs 0.23; surfaces 0.49 and 0.14), so
+    # no fixed value suits all. At 0.07 to 0.10 above the median as many true poses are above as poses 20 cm off are
+    # below. But a filter selects the best of many particles, and the best of half-hidden ones is better than the
+    # median: with 0.07 limbs hid or pointed at the camera, with 0.15 they did so the least (arms of a wide pair 9 cm
+    # instead of 32), with 0.25 and more hidden limbs moved into view.
     usual: tuple[float, float] = (0.33, 0.27)  # of edges and surface, before a limb has its own
     hidden_surplus: float = 0.15
     # time constant at which a limb's own are learned; 0: never, as [Hecht 2009]

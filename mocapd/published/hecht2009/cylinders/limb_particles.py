@@ -1,4 +1,4 @@
-"""A limb's particles: predicted, weighed, summed up and drawn anew, as pure functions of arrays and drawn numbers."""
+"""A limb's particle filter: predict, weight, estimate and resample, as pure functions of arrays and random numbers."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,7 @@
-"""How well the particles of a limb agree with the pictures of all cameras: the measurement model of [Hecht et al. 2009].
+"""The measurement model of a limb's particles in the pictures of all cameras [Hecht et al. 2009].
 
-Samples that nothing can be said of, as another part hides them or the picture ends, are charged what seen samples of
-that limb usually are and a little more: less than a limb in the wrong place is, more than one in the right place.
+A sample that is hidden by another part or outside the picture gets the limb's median penalty of visible samples plus a
+margin: less than a misplaced limb gets, more than a correct one.
 """
 
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ class LimbView:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Penalties:
-    """Of N particles in V views: mean (V,N,2), 0..1, over the samples seen, EDGE and SURFACE; seen (V,N,2): their share."""
+    """Of N particles in V views: mean (V,N,2), 0..1, over visible samples, EDGE and SURFACE; seen (V,N,2): their share."""
 
     mean: Floats
     seen: Floats
@@ -45,15 +45,15 @@ class Penalties:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UsualPenalties:
-    """What the penalties of one limb usually are where it is seen: mean (cameras,2), EDGE and SURFACE; seen_s
-    (cameras,2): for how long that was learned, at most its time constant."""
+    """Running means of one limb's penalties while visible: mean (cameras,2), EDGE and SURFACE; seen_s (cameras,2): the
+    averaging time so far, at most the time constant."""
 
     mean: Floats
     seen_s: Floats
 
     @classmethod
     def unknown(cls, n_cameras: int, params: LimbScoreParams) -> "UsualPenalties":
-        """Before the limb was seen."""
+        """The initial state."""
         return cls(np.tile(params.usual, (n_cameras, 1)), np.zeros((n_cameras, 2)))
 
 

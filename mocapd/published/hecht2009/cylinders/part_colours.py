@@ -1,7 +1,7 @@
-"""What each body part looks like: ten reference colours along its axis, learned and then fixed [Hecht et al. 2009, III.B].
+"""Appearance of the body parts: ten reference colours along each axis, learned and then fixed [Hecht et al. 2009, III.B].
 
-Each camera has colours of its own: two webcams show one sleeve differently, and see other sides of it. A ring of a part is
-fixed once it was seen well for long enough, so that a part which was hidden at first is learned when it appears.
+Each camera has colours of its own: two webcams show one sleeve differently, and from different sides. A ring of a part is
+fixed after it was clearly visible for long enough, so a part that is hidden at first is learned when it appears.
 """
 
 from dataclasses import dataclass, replace
@@ -20,14 +20,14 @@ _SAMPLES = 2, 6  # of a ring, along and across
 @dataclass(frozen=True, slots=True, eq=False)
 class AppearanceModel:
     """Of V cameras and C parts: colour (V,C,10,3) BGR 0..255 at the middles of ten rings from start to end; seen_s
-    (V,C,10): for how long each was seen, counted by how surely and how much of it."""
+    (V,C,10): time that each was visible, weighted by confidence and visible share."""
 
     colour: Singles
     seen_s: Floats
 
     @classmethod
     def unknown(cls, n_views: int, n_parts: int) -> "AppearanceModel":
-        """Before anything was seen."""
+        """The initial state."""
         return cls(
             np.zeros((n_views, n_parts, RINGS, 3), np.float32), np.zeros((n_views, n_parts, RINGS))
         )
@@ -53,7 +53,7 @@ def observe(
     occlusion: OcclusionModel,
     hidden_by_m: float,
 ) -> RingColours:
-    """The rings of parts (C,4,2) [work px], (C,2) [m] in a work picture (h,w,3); mask (h,w): not 0 where somebody is."""
+    """The rings of parts (C,4,2) [work px], (C,2) [m] in a work picture (h,w,3); mask (h,w): not 0 on the person."""
     mean, share = np.empty((len(quads), RINGS, 3), np.float32), np.empty((len(quads), RINGS))
     observe_colours(
         quads, depths_m, colour, mask, occlusion, _SAMPLES, hidden_by_m, mean, share
@@ -85,8 +85,8 @@ def learn(
 
 
 def reference_colours(model: AppearanceModel, along: int) -> Singles:
-    """Colours (V,C,along,3) at the middles of as many rows, interpolated between rings; at the ends, and between rings that
-    were never seen, that of the nearest one which was. NaN: no ring of the part was."""
+    """Colours (V,C,along,3) at the middles of `along` rows, interpolated between rings; at the ends and for unlearned rings
+    the nearest learned colour. NaN: no ring of the part is learned."""
     n_views, n_parts, _, _ = model.colour.shape
     rows = (np.arange(along) + 0.5) / along * RINGS - 0.5
     out = np.full((n_views, n_parts, along, 3), np.nan, np.float32)

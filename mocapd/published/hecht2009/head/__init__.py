@@ -1,1 +1,1 @@
-"""The head in space: a particle filter over what all cameras see of it."""
+"""3D head tracking: a particle filter over the pictures of all cameras."""

@@ -1,4 +1,4 @@
-"""Where in space a face is that one camera sees: by a camera beside it, by one far from it, or by its size alone."""
+"""Position of a face in one camera's picture: by a close second camera, by a distant one, or by its size alone."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ _PATCH = 0.45  # of the box's side: the face without its outline
 
 
 class Depth(Enum):
-    """What a face's distance comes from."""
+    """The source of a face's distance."""
 
     SIZE = "apparent size"
     STEREO = "a camera close by"
@@ -45,7 +45,7 @@ class PlacedFace:
 
 
 def apparent_distance_m(view: HeadView, box: FaceBox, stature_m: float) -> float:
-    """Along the ray to the box's middle, of a face of that person's size."""
+    """Distance along the ray to the box's middle, by the person's face size."""
     depth_m = FACE_WIDTH * stature_m * float(view.camera.K[0, 0]) / box.size_px
     _, ray = ray_through(view, _middle(box))
     return depth_m / max(float((view.camera.R @ ray)[2]), 0.1)
@@ -55,9 +55,9 @@ def placed_face(
     views: Sequence[HeadView], mine: HeadView, box: FaceBox, cascade: CascadeArrays, stature_m: float,
     params: HeadParams, is_still: Callable[[HeadView, FaceBox], bool],
 ) -> PlacedFace:  # fmt: skip
-    """The face in `box` of the view `mine`, by the best of the other views; by its size where none says more.
+    """The position of the face in `box` of the view `mine`, by the best of the other views, or else by its size.
 
-    is_still: whether a face of another view is a part of the background, with which this one does not meet.
+    is_still: whether a face of another view is part of the background; such a face is no match.
     """
     apparent_m = apparent_distance_m(mine, box, stature_m)
     from_m, ray = ray_through(mine, _middle(box))
@@ -100,7 +100,7 @@ def fits_swapped(
 
 
 def _with_cameras_of(view: HeadView, other: HeadView) -> HeadView:
-    """The picture as if the other camera had taken it."""
+    """The view with the other camera's calibration."""
     return replace(view, stereo=replace(other.stereo, grey=view.grey))
 
 

@@ -1,7 +1,7 @@
-"""Faces looked for in whole pictures, a part of one picture in each step, and watched for signs of life.
+"""Searches whole pictures for faces, a part of one picture in each step, and tests them for liveness.
 
-A face on a poster stays as it is: what decides is whether the picture there has changed over the last seconds. A
-picture of a face, still or moving, whose true size is not a person's is none either; that takes two cameras.
+A face on a poster does not change: the test is whether the picture there has changed over the last seconds. A face of
+the wrong true size is rejected too, still or moving; this needs two cameras.
 """
 
 from collections.abc import Sequence
@@ -33,12 +33,12 @@ from mocapd.vision.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays
 
 _WINDOWS = 36_000  # looked at in one step: 4 ms
 _LEAST_PX = 21.0  # of a face, with the picture enlarged a little
-_LOOKS = 4  # of the places of one step that are looked at closely
+_LOOKS = 4  # places of one step that are searched closely
 _REACH = 0.45  # of the side: how far a face moves from one step to the next
-_PAST_S = 0.25  # between pictures that are kept
+_PAST_S = 0.25  # between stored pictures
 _PASTS = 10
 _OLD_S = 0.3  # before a picture counts as past
-_SMALL = 4  # by which the kept pictures are reduced
+_SMALL = 4  # reduction factor of stored pictures
 _AROUND = 1.6  # of the box's side: head and hair
 _STILL = 0.012  # loss of correlation of a place where nothing but noise changes
 _SWAPPED_LOOKS = (
@@ -48,8 +48,8 @@ _SWAPPED_LOOKS = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FaceCandidate:
-    """A face that one view (camera index) sees; unseen_s: since it was last found there; looks: how often it was.
-    alive: its place has changed, None: too soon to tell. placed: where it is, as of `placed_s` ago; None: not yet."""
+    """A face in one view (camera index); unseen_s: time since its last detection; looks: number of detections. alive: its
+    picture has changed, None: too early. placed: its position as of `placed_s` ago; None: not yet."""
 
     view: int
     box: FaceBox
@@ -61,7 +61,7 @@ class FaceCandidate:
 
 
 class FaceSearch:
-    """Keeps the faces that are seen, where the search goes on, and what the pictures looked like."""
+    """State of the search: the face candidates, the scan position, and earlier pictures."""
 
     def __init__(self, cascade: CascadeArrays, stature_m: float, params: HeadParams) -> None:
         self._cascade, self._stature_m, self._params = cascade, stature_m, params
@@ -78,11 +78,11 @@ class FaceSearch:
 
     @property
     def swapped(self) -> bool:
-        """Whether two cameras must have changed places."""
+        """True if two cameras seem to be swapped."""
         return self._crossed >= max(_SWAPPED_LOOKS, 3 * self._straight)
 
     def remember(self, views: Sequence[HeadView], dt_s: float) -> None:
-        """Keep what the pictures look like, so that later ones can be held against them."""
+        """Store the pictures for comparison with later ones."""
         self._time_s += dt_s
         if self._past and self._time_s - self._past[-1][0] < _PAST_S:
             return
@@ -90,7 +90,7 @@ class FaceSearch:
         del self._past[:-_PASTS]
 
     def step(self, views: Sequence[HeadView], dt_s: float) -> None:
-        """Follow the candidates and look for others; `remember` comes before."""
+        """Track the candidates and search for further faces; call `remember` before."""
         by_index = {view.index: view for view in views}
         followed = [self._followed(c, by_index.get(c.view), dt_s) for c in self.candidates]
         self.candidates = [c for c in followed if c.unseen_s <= self._params.candidate_s]
@@ -112,7 +112,7 @@ class FaceSearch:
         return replace(older, box=seen[0], unseen_s=0.0, looks=of.looks + 1, alive=alive)
 
     def _place_one(self, views: Sequence[HeadView], by_index: dict[int, HeadView]) -> None:
-        """The candidate whose place is oldest, of those that are seen: one in each step, for it takes time."""
+        """Update the oldest position of the current candidates: only one a step, because it takes time."""
         seen = [i for i, c in enumerate(self.candidates) if c.unseen_s == 0.0]
         if not seen:
             return
@@ -122,7 +122,7 @@ class FaceSearch:
         self.candidates[i] = replace(of, placed=placed, placed_s=0.0)
 
     def placed(self, view: HeadView, box: FaceBox, views: Sequence[HeadView]) -> PlacedFace:
-        """Where the face in this box is; what does not fit tells whether the cameras have changed places."""
+        """The position of the face in this box; mismatches count towards `swapped`."""
         params = self._params
         placed = placed_face(
             views, view, box, self._cascade, self._stature_m, params, self._is_still
@@ -140,7 +140,7 @@ class FaceSearch:
         return placed
 
     def _look(self, views: Sequence[HeadView]) -> None:
-        """At one part of one picture; one view after the other, from large faces to small ones."""
+        """Search one part of one picture; cycles through the views, from large faces to small ones."""
         view = views[self._turn % len(views)]
         if not self._work:
             self._turn += 1
@@ -170,7 +170,7 @@ class FaceSearch:
         return self._alive(view, box) is False
 
     def _alive(self, view: HeadView, box: FaceBox) -> bool | None:
-        """Whether most pictures of the last seconds show something else in the place of the face."""
+        """True if the face's region differs in most pictures of the last seconds."""
         now = _patch(_reduced(view.grey), box)
         then = [
             _patch(pictures[view.index], box)

@@ -1,4 +1,4 @@
-"""The head's particles: moved, drawn anew where the measurements are, weighed."""
+"""The head's particle filter: predict, sample at the measurements, weight and resample."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from mocapd.types import Floats
 _SD_FLOOR_M = 0.004  # of the cloud along any direction, so that its density can be written down
 
 _FAR_SDS = 4.0
-_WIDE_M = 0.5  # spread of a place of which nothing is known but what is measured
+_WIDE_M = 0.5  # prior spread of a position
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,12 +37,12 @@ def along_ray(from_m: Floats, ray: Floats, sigma_across_m: float) -> tuple[Float
 def at_distance(
     from_m: Floats, ray: Floats, distance_m: float, sigma_m: float
 ) -> tuple[Floats, Floats]:
-    """At this distance from a point (3,), seen along a unit vector (3,)."""
+    """At this distance from a point (3,), along a unit vector (3,)."""
     return from_m + distance_m * ray, np.outer(ray, ray) / sigma_m**2
 
 
 def observations(parts: list[tuple[Floats, Floats]]) -> HeadObservations:
-    """What `along_ray` and `at_distance` say, together."""
+    """The observations of `along_ray` and `at_distance` combined."""
     if not parts:
         return HeadObservations(np.zeros((0, 3)), np.zeros((0, 3, 3)))
     means, information = (np.ascontiguousarray(np.stack(a)) for a in zip(*parts, strict=True))
@@ -52,13 +52,13 @@ def observations(parts: list[tuple[Floats, Floats]]) -> HeadObservations:
 def cloud_at(
     middle_m: Floats, covariance_m2: Floats, params: HeadParams, rng: np.random.Generator
 ) -> Cloud:
-    """A head at rest somewhere about here."""
+    """A cloud for a head at rest near a position."""
     place = rng.multivariate_normal(middle_m, covariance_m2, params.particles, method="eigh")
     return Cloud(place, rng.normal(0.0, 0.3, (params.particles, 3)))
 
 
 def predicted(cloud: Cloud, dt_s: float, params: HeadParams, rng: np.random.Generator) -> Cloud:
-    """After dt: constant velocity, pushed about."""
+    """The cloud after dt: constant velocity and noise."""
     push = rng.normal(0.0, params.push_sd_m_s2, cloud.place_m.shape)
     jitter = rng.normal(0.0, params.jitter_sd_m * np.sqrt(30.0 * dt_s), cloud.place_m.shape)
     place = cloud.place_m + cloud.velocity_m_s * dt_s + 0.5 * push * dt_s**2 + jitter
@@ -83,7 +83,7 @@ def updated(mean_m: Floats, covariance_m2: Floats, seen: HeadObservations) -> tu
 
 
 def is_far(cloud: Cloud, seen: HeadObservations) -> bool:
-    """Whether some measurement is too far from all particles to be of the same head, by chance."""
+    """True if a measurement is too far from all particles for the same head, beyond chance."""
     mean, covariance = moments(cloud.place_m)
     for at, information in zip(seen.means_m, seen.information, strict=True):
         # across what the measurement tells of, with the cloud's own spread on top
@@ -99,7 +99,7 @@ def is_far(cloud: Cloud, seen: HeadObservations) -> bool:
 def cloud_about(
     seen: HeadObservations, before: Cloud, params: HeadParams, rng: np.random.Generator
 ) -> Cloud:
-    """Particles where the measurements are, what they leave open as it was; their velocity is not known."""
+    """Particles sampled at the measurements, with unmeasured directions unchanged and a wide velocity."""
     mean, _ = moments(before.place_m)
     middle, covariance = updated(mean, _WIDE_M**2 * np.eye(3), seen)
     return cloud_at(middle, covariance, params, rng)
@@ -108,7 +108,7 @@ def cloud_about(
 def proposed(
     cloud: Cloud, seen: HeadObservations, params: HeadParams, rng: np.random.Generator
 ) -> tuple[Cloud, Floats]:
-    """Some of the particles drawn where the measurements are; with the logarithm (P,) of the weights that make up for it.
+    """Draws some of the particles at the measurements; with the logarithm (P,) of the importance weights.
 
     Importance sampling from a mixture (Isard and Blake, ICondensation, ECCV 1998), the cloud's own density taken as
     Gaussian. Their velocities follow from the cloud's correlation of place and velocity.
@@ -139,13 +139,13 @@ def _log_density(place_m: Floats, mean_m: Floats, covariance_m2: Floats) -> Floa
 
 
 def weights(log_weight: Floats) -> Floats:
-    """That add up to one, from logarithms (P,)."""
+    """Normalised weights from logarithms (P,)."""
     w = np.exp(log_weight - log_weight.max())
     return np.asarray(w / w.sum())
 
 
 def resampled(cloud: Cloud, weight: Floats, rng: np.random.Generator) -> Cloud:
-    """As many particles of one weight, by systematic resampling."""
+    """The same number of particles with equal weights, by systematic resampling."""
     n = len(weight)
     at = (rng.random() + np.arange(n)) / n
     chosen = np.minimum(np.searchsorted(np.cumsum(weight), at), n - 1)

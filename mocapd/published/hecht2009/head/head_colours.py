@@ -1,7 +1,7 @@
-"""What a head looks like to one camera: learned where the face is, whatever skin, hair and light.
+"""Colour model of a head in one camera, learned at the face for any skin, hair and light.
 
-Two histograms each way, as log odds against what is around the head: of colours, for the whole head with its hair;
-and of chrominance, for skin (Hecht, Azad and Dillmann 2009, section III.B, whose segmentation it is).
+Two pairs of histograms, as log odds of the head against its surroundings: of colours, for the whole head with its hair;
+and of chrominance, for skin (the segmentation of Hecht, Azad and Dillmann 2009, section III.B).
 """
 
 from dataclasses import dataclass
@@ -40,13 +40,13 @@ class HeadEllipse:
 
 
 def unknown_colours() -> HeadColours:
-    """Nothing is known; all odds are even."""
+    """The initial state: all odds are even."""
     colours, chroma = kernels.SIDE**3, kernels.CHROMA**2
     return HeadColours(*(np.zeros(n, np.float32) for n in (colours, colours, chroma, chroma, colours, chroma)))  # fmt: skip
 
 
 def are_known(colours: HeadColours) -> bool:
-    """Whether a head has been seen."""
+    """True after the first learned head."""
     return float(colours.head.sum()) >= _LEAST
 
 
@@ -66,7 +66,7 @@ def light_gain(picture: Bytes, outline: HeadEllipse) -> float:
 def learned(
     colours: HeadColours, picture: Bytes, outline: HeadEllipse, facing: bool, dt_s: float
 ) -> HeadColours:
-    """With this picture (H,W,3) BGR; `facing`: a face was seen in it, so that its middle is skin."""
+    """Updated with this picture (H,W,3) BGR; `facing`: a face was detected in it, so that its middle is skin."""
     head, around, skin, other = (
         np.zeros_like(a) for a in (colours.head, colours.around, colours.skin, colours.other)
     )
@@ -96,7 +96,7 @@ def _chroma_odds(skin: Singles, other: Singles) -> Singles:
 
 
 def skin_pixels(colours: HeadColours, picture: Bytes) -> Bytes:
-    """255 (h,w) where picture (h,w,3) BGR is rather the wearer's skin than not; 0 everywhere while it is not known."""
+    """255 (h,w) where picture (h,w,3) BGR is more likely the wearer's skin than not; 0 everywhere before learning."""
     out = np.zeros(picture.shape[:2], np.uint8)
     if float(colours.skin.sum()) >= _LEAST:
         kernels.skin_map(picture, colours.skin_odds, out)
@@ -106,7 +106,7 @@ def skin_pixels(colours: HeadColours, picture: Bytes) -> Bytes:
 def face_side(
     colours: HeadColours, picture: Bytes, outline: HeadEllipse
 ) -> tuple[float, float] | None:
-    """Share of the head that is skin, and how far its middle lies to the picture's right, -1..1; None: not known."""
+    """Share of the head that is skin, and how far its middle lies to the picture's right, -1..1; None: unknown."""
     if float(colours.skin.sum()) < _LEAST:
         return None
     share, side = kernels.skin_side(picture, outline.ellipse, outline.up, colours.skin_odds)

@@ -1,4 +1,4 @@
-"""What the pictures of one instant say of a head that is followed: its face, its distance, its colours."""
+"""Evidence of a tracked head in the pictures of one instant: face, distance and colours."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,17 +36,17 @@ _REACH = 0.5  # of the face's side: how far from where it is expected it is look
 _SAME = 0.7  # of the face's side: farther off it is another's
 _WINDOWS = 1  # that find a face where one is expected
 _PATCH = 0.8  # of the head's half height: the patch whose distance is taken
-# where hands leave part of the head free: crown, left, right; middle in half widths and half heights, and size
+# patches for a head that is partly hidden by hands: crown, left, right; middle in half widths and heights, and size
 _PARTS = ((0.0, 0.45, 0.45), (-0.45, 0.0, 0.45), (0.45, 0.0, 0.45))
-_GATE_M = 0.04  # beyond what is uncertain: a distance that jumps farther is that of something else
-_NEARER_M = 0.1  # at most, whatever is uncertain: a hand before the face is as near as that
+_GATE_M = 0.04  # beyond the uncertainty: a distance that jumps farther is of another object
+_NEARER_M = 0.1  # limit of a jump towards the camera, for any uncertainty: a hand in front of the face is that near
 _LEAST_SKIN = 0.12  # share of the head, under which it is turned away
-_FULL_SIDE = 0.5  # how far to one side the skin's middle lies on a head seen from the side
+_FULL_SIDE = 0.5  # offset of the skin's middle on a head in profile
 _NO_FOREGROUND = np.zeros((0, 0), np.uint8)
 # a hand before the face lowers the correlation: it may lose that much more than faces lost before
 _LOSS_TIMES = 2.5
 _LOSS_MORE = 0.01
-_USUAL_LOSS = 0.05  # before any was seen
+_USUAL_LOSS = 0.05  # initial value
 _LOSS_SHARE = 0.05  # of a new face in what is usual
 
 
@@ -61,7 +61,7 @@ class HeadGuess:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeadSighting:
-    """Boxes by camera index, what `head_cloud.observations` takes, and whether a face and its distance are in it."""
+    """Boxes by camera index, the input of `head_cloud.observations`, and whether it has a face and a distance."""
 
     boxes: tuple[FaceBox | None, ...]
     parts: list[tuple[Floats, Floats]]
@@ -69,7 +69,7 @@ class HeadSighting:
 
 
 class HeadEvidence:
-    """Keeps each camera's colours of the head."""
+    """Holds each camera's colour model of the head."""
 
     def __init__(
         self, n_cameras: int, cascade: CascadeArrays, stature_m: float, params: HeadParams
@@ -86,7 +86,7 @@ class HeadEvidence:
         self._loss = _USUAL_LOSS
 
     def seen(self, views: Sequence[HeadView], guess: HeadGuess) -> HeadSighting:
-        """Faces about where the head should be, one view after the other, and its distance from pairs."""
+        """Faces near the predicted head in each view, and its distance from pairs of views."""
         boxes: list[FaceBox | None] = [None] * self._n
         parts: list[tuple[Floats, Floats]] = []
         self._turn += 1
@@ -95,7 +95,7 @@ class HeadEvidence:
             if i == self._turn % len(views):
                 boxes[view.index] = self._face(view, at_m)
         is_complete = has_distance = False
-        # the view whose face is seen first: its distance is the surest
+        # the view with the first face detection: its distance is the surest
         for view in sorted(views, key=lambda v: boxes[v.index] is None):
             pair = self._distance(views, view, boxes[view.index], guess)
             if pair is not None:
@@ -124,7 +124,7 @@ class HeadEvidence:
     def _of_face(
         self, view: HeadView, box: FaceBox, guess: HeadGuess, has_distance: bool
     ) -> list[tuple[Floats, Floats]]:
-        """A face says where the head is across the ray and, unless a pair does, how far by its size."""
+        """A face measures the head's position across the ray and, without a pair, its distance by size."""
         params = self._params
         from_m, ray = ray_through(view, np.array([box.x_px, box.y_px]))
         # where the head is now, not when this picture was taken
@@ -141,7 +141,7 @@ class HeadEvidence:
     def _distance(
         self, views: Sequence[HeadView], near: HeadView, box: FaceBox | None, guess: HeadGuess
     ) -> tuple[Floats, Floats] | None:
-        """From this view and one close beside it: of the head, or of the part of it that no hand is before."""
+        """From this view and a close second one: of the head, or of its part without a hand in front."""
         at_m = guess.middle_m + near.offset_s * guess.velocity_m_s
         outline = ellipse_of(near.camera, at_m, self._size)
         if outline is None:
@@ -174,7 +174,7 @@ class HeadEvidence:
         return None
 
     def _is_bare(self, found: Distance) -> bool:
-        """Whether the two views of the patch agree as well as they did when the face was seen."""
+        """True if the two views of the patch agree as well as at the last face detection."""
         return 1.0 - found.correlation <= _LOSS_TIMES * self._loss + _LOSS_MORE
 
     def _swept(
@@ -188,7 +188,7 @@ class HeadEvidence:
         )  # fmt: skip
 
     def log_likelihood(self, views: Sequence[HeadView], cloud: Cloud, guess_m: Floats) -> Floats:
-        """Of each particle (P,), by colours, outline and foreground."""
+        """Scores of the particles (P,), by colours, outline and foreground."""
         out = np.zeros(len(cloud.place_m))
         for view in views:
             if are_known(self._colours[view.index]) or view.has_foreground:
@@ -199,7 +199,7 @@ class HeadEvidence:
         return out
 
     def support(self, views: Sequence[HeadView], middle_m: Floats, velocity_m_s: Floats) -> float:
-        """Of colours and outline at one place, in the view that sees them best; 0 while no colours are known."""
+        """Score of colours and outline at one place, in the best view; 0 before colours are learned."""
         at_m = [middle_m + view.offset_s * velocity_m_s for view in views]
         return max((self._sure(v, at) for v, at in zip(views, at_m, strict=True)), default=0.0)
 
@@ -224,7 +224,7 @@ class HeadEvidence:
         return out
 
     def learn_first(self, views: Sequence[HeadView], face: PlacedFace) -> None:
-        """The colours, where a face was found."""
+        """Update the colours in views with a detected face."""
         for view in views:
             outline = ellipse_of(view.camera, face.middle_m, self._size)
             if outline is not None:
@@ -236,7 +236,7 @@ class HeadEvidence:
         self, views: Sequence[HeadView], middle_m: Floats, velocity_m_s: Floats,
         boxes: Sequence[FaceBox | None], dt_s: float,
     ) -> None:  # fmt: skip
-        """The colours, where the head shows its face or is as sure as that."""
+        """Update the colours in views with a face, or with an equally certain head."""
         for view in views:
             at_m = middle_m + view.offset_s * velocity_m_s
             outline = ellipse_of(view.camera, at_m, self._size)
@@ -251,7 +251,7 @@ class HeadEvidence:
     def yaw_rad(
         self, views: Sequence[HeadView], middle_m: Floats, velocity_m_s: Floats
     ) -> float | None:
-        """Which way a face that was just seen looks, by the side of the head on which its skin shows; None: not known.
+        """Yaw of a just detected face, by the side of the head with the skin; None: unknown.
 
         Coarse, 10 to 30 degrees, and only for heads that show their face: hair may have the colour of skin.
         """

@@ -1,7 +1,6 @@
-"""A head found by its outline, where a background is known: for faces that the detector does not see.
+"""Finds a head by its outline before a learned background, for faces that the detector misses.
 
-The top of somebody before the background is a head when it is as high and as narrow as one at a distance on which the
-cameras agree.
+The top of the foreground is a head if it is as high and as narrow as a head at a distance on which the cameras agree.
 """
 
 from collections.abc import Sequence
@@ -29,10 +28,10 @@ from mocapd.types import Floats
 from mocapd.vision.face.face_detection import FaceBox
 
 _SMALL = 4  # by which the foreground is reduced
-_LEAST_SHARE = 0.01  # of the picture that somebody takes
-_TOP_ROWS = 4  # of the reduced foreground, whose middle is the crown's
+_LEAST_SHARE = 0.01  # of a person in the picture
+_TOP_ROWS = 4  # of the reduced foreground; their middle is the crown's
 _DISTANCES = 32
-_LEAST_SCORE = 0.75  # of a head before the background alone, at best 1 and its edge
+_LEAST_SCORE = 0.75  # of a head by the foreground alone; the best is 1 plus its edge
 _TOPS = 3  # sizes that are tried
 _PATCH = 0.7  # of the head's half height
 _SIGMA_SHARE = 0.4  # of a head's half height: how well its outline says where it is
@@ -41,7 +40,7 @@ _SIGMA_SHARE = 0.4  # of a head's half height: how well its outline says where i
 def outlined_head(
     views: Sequence[HeadView], stature_m: float, params: HeadParams
 ) -> tuple[int, FaceBox, PlacedFace] | None:
-    """Camera index, box about the face that is not seen, and the place of the head; None where views do not agree.
+    """Camera index, box about the undetected face, and position of the head; None where the views do not agree.
 
     A whole person may fit a near head as well as the head fits a far one: the distance decides.
     """
@@ -62,7 +61,7 @@ def outlined_head(
 def _met(
     one: HeadView, a: FaceBox, other: HeadView, b: FaceBox, stature_m: float, params: HeadParams
 ) -> PlacedFace | None:
-    """Where two tops meet in space, each of a head's size there."""
+    """The intersection of two tops in space, where both have a head's size."""
     if one.index == other.index or not have_baseline(one.camera, other.camera):
         return None
     xy = np.stack([normalised(one.camera, _middle(a)), normalised(other.camera, _middle(b))])
@@ -93,7 +92,7 @@ def _apparent_m(view: HeadView, box: FaceBox, stature_m: float) -> float:
 def _beside(
     view: HeadView, other: HeadView, box: FaceBox, stature_m: float, params: HeadParams
 ) -> PlacedFace | None:
-    """Where a camera close beside sees the same."""
+    """The position by a close second camera."""
     if other.index == view.index or not have_baseline(view.camera, other.camera):
         return None
     apparent_m, size = _apparent_m(view, box, stature_m), head_size(stature_m)

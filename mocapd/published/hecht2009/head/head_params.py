@@ -28,17 +28,15 @@ class HeadParams:
         5.5  # a face there is 17 px wide for a webcam, less than the detector's window
     )
     least_windows: int = 3  # of a face that is believed
-    least_looks: int = 2  # at which it was seen
-    outline_looks: int = (
-        6  # at which an outline before the background was a head, with no face seen
-    )
+    least_looks: int = 2  # detections
+    outline_looks: int = 6  # with a head outline before the background and no detected face
     candidates: int = 3
-    candidate_s: float = 0.6  # how long a face counts after it was last seen
+    candidate_s: float = 0.6  # validity of a face after its last detection
     size_share: tuple[float, float] = (0.65, 1.5)  # a face's true width against a grown person's
     meeting_m: float = 0.08  # how near the rays of two views must pass to mean one face
 
     # losing
     coast_s: float = 0.6  # without a face, colours or distance that agree
     least_support: float = 0.5  # of colours and outline together, at the best place
-    facing_s: float = 0.4  # how long a face that was seen still says which way the person looks
-    learn_support: float = 0.9  # colours are learned without a face from what is as sure as that
+    facing_s: float = 0.4  # validity of a detected face for the person's facing direction
+    learn_support: float = 0.9  # least support for learning colours without a face

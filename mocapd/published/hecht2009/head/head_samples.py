@@ -1,4 +1,4 @@
-"""Where a head's outline is looked at, inside and along it: in shares of its half width and height."""
+"""Sample points inside and along a head's outline, in shares of its half width and height."""
 
 import numpy as np
 

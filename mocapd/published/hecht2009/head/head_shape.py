@@ -9,7 +9,7 @@ from mocapd.geometry.camera_model import project, to_camera
 from mocapd.published.hecht2009.head.head_colours import HeadEllipse
 from mocapd.types import Camera, Floats
 
-# From the head's joint, a person who faces +Z: the face between brow and nose. A head is 0.130 of the stature high
+# From the head's joint, for a person facing +Z: the face between brow and nose. A head is 0.130 of the stature high
 # (Drillis and Contini 1966).
 FACE = np.array([0.0, 0.050, 0.075])
 HALF_WIDTH = 0.048

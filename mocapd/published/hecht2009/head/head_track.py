@@ -1,4 +1,4 @@
-"""What is known of a head in one instant."""
+"""The state of a tracked head."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -10,7 +10,7 @@ from mocapd.vision.face.face_detection import FaceBox
 
 
 class HeadState(StrEnum):
-    """`lost`: no head is known; `found`: a face is seen, but not that it belongs to somebody alive; `tracked`."""
+    """`lost`: no head; `found`: a face is detected but not confirmed as live; `tracked`."""
 
     LOST = "lost"
     FOUND = "found"
@@ -27,9 +27,9 @@ class StereoFault(StrEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeadPicture:
-    """One camera's picture (h,w,3) uint8 BGR, exposed offset_s after the instant that is asked for; None: it has none.
+    """One camera's picture (h,w,3) uint8 BGR, exposed offset_s after the requested instant; None: it has none.
 
-    foreground (h,w) uint8: 0 where the background shows; None: it is not known.
+    foreground (h,w) uint8: 0 on the background; None: unknown.
     """
 
     pixels: Bytes | None
@@ -43,8 +43,8 @@ class HeadTrack:
 
     joint_m (3,): the skeleton's head joint; middle_m: the head's middle; face_m: the middle of the face; None where
     lost. velocity_m_s (3,). sigma_along_m, sigma_across_m: one standard deviation along the ray of the nearest
-    camera and across it. yaw_rad: which way the face looks, 0 along +Z, positive to the person's left; None: not
-    seen. boxes: each camera's face of this head as seen in this instant. support: of colours and outline, about 0..2.
+    camera and across it. yaw_rad: the face's direction, 0 along +Z, positive to the person's left; None: unknown.
+    boxes: this head's face detections in this instant. support: score of colours and outline, about 0..2.
     """
 
     state: HeadState

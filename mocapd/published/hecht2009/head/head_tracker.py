@@ -1,8 +1,8 @@
-"""The head from frame to frame: found by its face, followed by a particle filter in all views, lost and found again.
+"""Tracks the head: detection by its face, then a particle filter in all views, and detection again after a loss.
 
 Hecht, Azad and Dillmann, Markerless Human Motion Tracking with a Flexible Model and Appearance Learning, ICRA 2009,
-section III.B, in world coordinates and with every camera at once: each particle is a head in space, weighed by the
-colours and outline that it explains in each picture, by faces seen, and by its distance from a close pair.
+section III.B, in world coordinates and with every camera at once: each particle is a head in space, weighted by the
+colours and outline that it explains in each picture, by detected faces, and by its distance from a close pair.
 """
 
 from collections.abc import Sequence
@@ -54,7 +54,7 @@ _APART_M = 0.3  # a face that is farther from the tracked head belongs to anothe
 
 
 class HeadTracker:
-    """Holds the particles, the colours of the head and the search for faces; nothing else is kept between steps."""
+    """The state between steps: the particles, the head's colours and the search for faces."""
 
     def __init__(
         self,
@@ -75,7 +75,7 @@ class HeadTracker:
         self.reset()
 
     def reset(self, near_m: Floats | None = None) -> None:
-        """Forget the head; near_m (3,): the middle of one that another tracker knows, to start from."""
+        """Reset; near_m (3,): the head's middle from another tracker, as the start."""
         self._rng = np.random.default_rng(self._seed)
         self._search.reset()
         self._evidence.reset()
@@ -94,7 +94,7 @@ class HeadTracker:
         views = head_views(self._cameras, self._arrays, pictures)
         self._search.remember(views, dt_s)
         if self._near_m is not None and views:
-            # what stands there is the head, with no face seen of it
+            # the surface there is the head, without a detected face
             self._evidence.learn_first(
                 views, PlacedFace(self._near_m, 0.05, Depth.MEETING, {}, 1.0)
             )
@@ -114,7 +114,7 @@ class HeadTracker:
         return self._found(views)
 
     def _found(self, views: Sequence[HeadView]) -> HeadTrack:
-        """The best face that is seen; it is tracked from now on when it is alive and of a head's size."""
+        """The best detected face; starts to track it if it is live and of a head's size."""
         if self._search.swapped:
             return HeadTrack(HeadState.LOST, fault=StereoFault.SWAPPED)
         known = [(c, c.placed) for c in self._search.candidates if c.placed and self._is_head(c, c.placed)]  # fmt: skip
@@ -127,7 +127,7 @@ class HeadTracker:
         return self._told(HeadState.FOUND, best, placed)
 
     def _outlined(self, views: Sequence[HeadView]) -> HeadTrack:
-        """Somebody before a known background, whose head stays one over some looks, though no face is seen."""
+        """A head without a detected face: a head outline before the background in several successive looks."""
         seen = outlined_head(views, self._stature_m, self._params)
         lost = HeadTrack(HeadState.LOST, fault=self._fault)
         if seen is None:
@@ -146,8 +146,8 @@ class HeadTracker:
         return replace(self._told(HeadState.TRACKED, of, placed), yaw_rad=None)
 
     def _is_head(self, of: FaceCandidate, placed: PlacedFace) -> bool:
-        """Seen more than once, of a head's size, and at a distance on which a pair agrees; one camera, or two in one
-        place, go by the size."""
+        """True for a face that was detected more than once, has a head's size, and a distance on which a pair agrees. One
+        camera, or two in one place, use the size only."""
         alone = len(self._cameras) == 1 or self._fault is StereoFault.NO_BASELINE
         is_placed = alone or placed.depth is not Depth.SIZE
         often = of.looks >= self._params.least_looks
@@ -196,14 +196,14 @@ class HeadTracker:
         return float(np.arctan2(way[0], way[2]))
 
     def _tracked(self, before: Cloud, views: Sequence[HeadView], dt_s: float) -> HeadTrack | None:
-        """The filter's step; None, and no cloud is left, when nothing has agreed for too long."""
+        """The filter's step; None, and the cloud is dropped, after too long without agreeing evidence."""
         params = self._params
         cloud = predicted(before, dt_s, params, self._rng)
         guess = self._guess(cloud)
         seen = self._evidence.seen(views, guess)
         measured = observations(seen.parts)
         if seen.is_complete and is_far(cloud, measured):
-            # a face and its distance together say where the head is: the particles were drawn away from it
+            # a face with its distance determines the position, but the particles drifted away from it
             cloud = cloud_about(measured, cloud, params, self._rng)
         cloud, log_weight = proposed(cloud, measured, params, self._rng)
         log_weight += self._evidence.log_likelihood(views, cloud, guess.middle_m)
@@ -233,7 +233,7 @@ class HeadTracker:
     def _check_place(
         self, views: Sequence[HeadView], boxes: Sequence[FaceBox | None], dt_s: float
     ) -> None:
-        """A face that only some views still see where it should be is looked for along its ray in the others."""
+        """Search for a face that only some views confirm along its ray in the other views."""
         self._since_check_s += dt_s
         for i, box in enumerate(boxes):
             self._box_age_s[i] = 0.0 if box is not None else self._box_age_s[i] + dt_s
@@ -284,7 +284,7 @@ class HeadTracker:
         )
 
     def _in_reach(self, middle: Floats) -> bool:
-        """Whether some camera sees the place, not too near and not too far."""
+        """True if the place is in view of a camera, not too near and not too far."""
         for camera in self._cameras:
             away_m = float(np.linalg.norm(centre(camera) - middle))
             x, y = project(camera, middle)
@@ -294,11 +294,11 @@ class HeadTracker:
         return False
 
     def _is_doubtful(self, track: HeadTrack | None) -> bool:
-        """Whether what is followed may be no head."""
+        """True if the tracked object may be no head."""
         return track is not None and track.support < self._params.learn_support
 
     def _hand_over(self, track: HeadTrack | None, views: Sequence[HeadView]) -> None:
-        """Follow another face instead, when the tracked head has long shown none and that one is as near."""
+        """Switch to another face when the tracked head has had none for long and the other is as near."""
         if track is None or track.middle_m is None or self._faceless_s < _HAND_OVER_S:
             return
         mine_m = min(float(np.linalg.norm(track.middle_m - centre(c))) for c in self._cameras)

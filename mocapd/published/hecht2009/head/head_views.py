@@ -1,4 +1,4 @@
-"""The pictures of one instant as the head's search and filter take them."""
+"""The pictures of one instant as input of the head's search and filter."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,8 +18,8 @@ _UNKNOWN = np.zeros((0, 0), np.uint8)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeadView:
-    """A camera's picture: its place among the cameras, grey for faces and distance, colours, its lateness [s], and
-    foreground (h,w), or (0,0) where that is not known."""
+    """A camera's picture: the camera's index, grey for faces and distance, colours, its lateness [s], and foreground
+    (h,w), or (0,0) where that is unknown."""
 
     index: int
     stereo: StereoView

@@ -1,8 +1,8 @@
-"""How far a head is from one camera, from what a second camera close beside it sees of the same face.
+"""Distance of a head from one camera, by the same face in a close second camera.
 
 Plane sweep (Collins, A space-sweep approach to true multi-image matching, CVPR 1996) with the front of a ball in the
-place of the plane: each distance says where the face's pixels lie in the other picture, and the correlation of the
-grey values says how well that fits. Needs no rectified pictures.
+place of the plane: each distance maps the face's pixels to the other picture, and the correlation of the grey values
+scores it. Needs no rectified pictures.
 """
 
 from dataclasses import dataclass
@@ -65,8 +65,8 @@ def swept_distance(
 ) -> Distance | None:
     """Of the ball whose picture in `near` has its middle at middle_px (2,); half_px: of the patch that is compared.
 
-    between_m: least and largest distance that are tried; motion_m (3,): by how much the ball has moved in the world
-    when `other` was exposed. None: no distance fits, or two do, or the patch has no contrast.
+    between_m: range of the sweep; motion_m (3,): the ball's motion in the world until the exposure of `other`. None: no
+    distance fits, or two do, or the patch has no contrast.
     """
     pixels = middle_px + half_px * _SAMPLES
     values = _sampled(near.grey, pixels)

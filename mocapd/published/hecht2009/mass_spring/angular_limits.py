@@ -35,7 +35,7 @@ _COLLAR_DEG = 15.0, 22.0
 _GIRDLE_DEG = 35.0, 25.0
 # Knees bend in the plane that the thigh's twist gives, up to 60 degrees to either side; neutral twists differ by 15.
 _KNEE_SIDE_DEG = 75.0
-# Thighs of deep squats swing twice as far aside; points that may, too, lead the particles astray.
+# Thighs of deep squats swing out twice as far, but with limits that wide the particles went wrong.
 _THIGH_ASIDE_DEG = 60.0
 # straighter than that a limb has no side: joints overstretch by 7 to 10, and points are noisy
 _STRAIGHT_DEG = 10.0

@@ -46,7 +46,7 @@ _WAIST_HALF_WIDTH = 0.075  # in statures: a little inside of the trunk's surface
 
 
 def rest_points(shape: BodyShape, skeleton: Skeleton) -> Floats:
-    """The points (16,3) in the T-pose [m], standing at the origin and facing +Z; skeleton: that of the shape."""
+    """The points (16,3) in the T-pose [m], at the origin and facing +Z; skeleton: that of the shape."""
     rest = skeleton.rest_m
     out = np.empty((N_POINTS, 3))
     out[JOINT_POINTS] = rest[JOINTS_OF_POINTS]

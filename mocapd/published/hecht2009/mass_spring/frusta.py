@@ -42,9 +42,9 @@ _HALF_HEAD = 0.065  # from the head's middle to chin or crown, in statures
 class Frusta:
     """C frusta in the order of NAMES.
 
-    start_index, end_index (C,): rows of `ends_of`; radius_start_m, radius_end_m (C,): half the breadth as seen from in
-    front of the body; depth_ratio (C,): depth of a cross-section by its breadth, 1 for limbs; half_head_m: from the head's
-    middle to chin and crown; head_ahead_m: of its middle before the point HEAD.
+    start_index, end_index (C,): rows of `ends_of`; radius_start_m, radius_end_m (C,): half the breadth in the frontal
+    view; depth_ratio (C,): depth of a cross-section relative to its breadth, 1 for limbs; half_head_m: from the head's
+    middle to chin and crown; head_ahead_m: of its middle in front of the point HEAD.
     """
 
     start_index: Ints

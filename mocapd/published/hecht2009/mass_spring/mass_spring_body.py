@@ -102,8 +102,8 @@ def build_body(shape: BodyShape, softness: Softness | None = None) -> MassSpring
 
 
 def _clearance(shape: BodyShape, rest_m: Floats) -> Floats:
-    """The ankles' height when standing, a little less, as floor and stature are known to a centimetre and a leg would bend
-    by 15 degrees for that; knees, hands and the rest may lie on the floor."""
+    """Least height of each point. Of the ankles: a little below their height in the T-pose, because floor and stature are
+    accurate to a centimetre, for which a leg would bend by 15 degrees. All other points may lie on the floor."""
     out = np.full(N_POINTS, 0.03 * shape.stature_m)
     out[list(ANKLE)] = rest_m[list(ANKLE), 1] - _FLOOR_GIVE_M
     return out

@@ -69,9 +69,9 @@ def inverse_masses(mass_kg: Floats) -> Floats:
 def confident_masses(
     base_kg: Floats, spread_m: Floats, variable_kg: float = 30.0, falloff_per_m: float = -12.0
 ) -> Floats:
-    """m = m_base + m_variable exp(s sigma) for points whose filters have these spreads (16,) [m]; inf: no filter's.
+    """m = m_base + m_variable exp(s sigma) for points with these filter spreads (16,) [m]; inf: without a filter.
 
-    The paper calls sigma the variance; here it is the standard deviation, whose unit goes with a length s < 0.
+    The paper calls sigma the variance; here it is the standard deviation, so that s < 0 is in 1/m.
     """
     masses: Floats = base_kg + variable_kg * np.exp(falloff_per_m * np.maximum(spread_m, 0.0))
     return masses
@@ -89,7 +89,7 @@ def with_head(
     middle_m: Floats,
     params: SimulationParams | None = None,
 ) -> MassSpringState:
-    """The head's middle at middle_m (3,), all other points moved by head_share of the way of HEAD; velocities are kept."""
+    """The head's middle at middle_m (3,), all other points moved by head_share of HEAD's motion; velocities unchanged."""
     params = params if params is not None else SimulationParams()
     head = middle_m - body.frusta.head_ahead_m * head_forward(state.points_m)
     points = state.points_m + params.head_share * (head - state.points_m[HEAD])
@@ -124,8 +124,8 @@ def advanced(
 ) -> MassSpringState:
     """The state dt_s later: Verlet steps with gravity and damping, each projected.
 
-    mass_kg (16,): the body's own unless given, inf for points that stay; floor_m: height of the floor, None where it is not
-    known. More than params.most_s is not simulated.
+    mass_kg (16,): the body's own unless given, inf for fixed points; floor_m: height of the floor, None where unknown. Time
+    beyond params.most_s is not simulated.
     """
     params = params if params is not None else SimulationParams()
     dt = min(max(dt_s, 0.0), params.most_s)
@@ -148,7 +148,7 @@ def projected(
     floor_m: float | None = None,
     params: SimulationParams | None = None,
 ) -> MassSpringState:
-    """The nearest state that the constraints allow, heavy points moving least; no time passes, velocities are kept."""
+    """The nearest state that the constraints allow; heavy points move least. No time passes, velocities are unchanged."""
     params = params if params is not None else SimulationParams()
     points = state.points_m[None].copy()
     project(
@@ -169,7 +169,7 @@ def project_limb(
     sweeps: int = 4,
     params: SimulationParams | None = None,
 ) -> Floats:
-    """Particles (N,3,3) [m] of one of LIMBS, forced back to states that are valid beside the other points of points_m (16,3).
+    """Particles (N,3,3) [m] of one of LIMBS, projected to states that are valid with the other points of points_m (16,3).
 
     Only the constraints that touch the three points are active; all other points stay [Hecht et al. 2009, section III.A].
     """

@@ -1,8 +1,8 @@
-"""Between the sixteen points and the skeleton: global rotations where points determine them, and what they leave open.
+"""Converts between the sixteen points and the skeleton, with the uncertainty of undetermined rotations.
 
-Trunk, hips and the directions of limbs are determined by points. The twist of an upper arm or thigh is so far as its
-joint is bent; neither the twist of forearm and shank nor that of the head is, nor how hands and feet stand. What is
-open takes the smallest turn from the bone above, and its standard deviation is told.
+Points determine trunk, hips and the directions of limbs. They determine the twist of an upper arm or thigh as far as its
+joint is bent, but not the twist of forearm, shank and head, nor the rotations of hands and feet. An undetermined rotation
+is the smallest one from the bone above, with a standard deviation.
 """
 
 from dataclasses import dataclass
@@ -56,16 +56,16 @@ _HINGE_SD_RAD = np.radians(15.0)  # the hinge's own direction differs between pe
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SkeletonPose:
-    """pose: of the body's own skeleton; open_rad (22,): standard deviation of what the points leave open of each bone's
-    rotation, 0 where they determine it; about the bone, but for hands, feet and toes, whose every turn is open."""
+    """pose: of the body's own skeleton; open_rad (22,): standard deviation of the undetermined part of each bone's
+    rotation, 0 where points determine it; about the bone's axis, for hands, feet and toes about any axis."""
 
     pose: Pose
     open_rad: Floats
 
 
 def skeleton_from_points(body: MassSpringBody, points_m: Floats) -> SkeletonPose:
-    """The pose of the body's skeleton that points (16,3) [m, world] show. Bones keep their length, so that joints may lie
-    beside points by what the springs give; the trunk is placed to fit shoulders and hips best."""
+    """The pose of the body's skeleton for points (16,3) [m, world]. Bones have fixed lengths, so joints differ from points
+    by the springs' extension; the trunk is the best fit to shoulders and hips."""
     p, rest = np.asarray(points_m, dtype=float), body.skeleton.rest_m
     quats = np.empty((N_JOINTS, 4))
     upper, lower = _trunk_turns(p, body.rest_m)
@@ -94,7 +94,7 @@ def skeleton_from_points(body: MassSpringBody, points_m: Floats) -> SkeletonPose
     reach = p[_END] - p[_MIDDLE]
     twist, sine = _bend_side(untwisted, bone, reach)
     length = np.linalg.norm(rest[_END_BONE] - rest[_LOWER_BONE], axis=1)
-    # a measurement of the twist with the bend's own uncertainty, beside what is known without it
+    # fuse a measurement of the twist, with the bend's uncertainty, with the estimate without it
     spread2 = (_POINT_SD_M / (length * np.maximum(sine, 1e-3))) ** 2 + _HINGE_SD_RAD**2
     known = _OPEN_TWIST_RAD**2 / (_OPEN_TWIST_RAD**2 + spread2)
     turn = rotations.exp((known * twist)[:, None] * _unit(bone))

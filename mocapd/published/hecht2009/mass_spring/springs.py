@@ -94,8 +94,8 @@ def adapted_lengths(
 ) -> Floats:
     """Lengths (S,) moved towards the observed ones by their weights (S,) in 0..1, within MOST_ADAPTED of the built ones.
 
-    A weight is the share of the way in this call: a caller who wants a time constant tau gives 1 - exp(-dt / tau) times
-    its confidence. A length observed as no number is not observed.
+    A weight is the step size of this call: for a time constant tau use 1 - exp(-dt / tau) times the confidence. A NaN
+    length is not observed.
     """
     share = np.clip(np.where(np.isfinite(weights), weights, 0.0), 0.0, 1.0)
     known = np.isfinite(observed_m)

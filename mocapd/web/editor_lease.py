@@ -1,11 +1,11 @@
-"""Two browsers at once: one drives the setup, the others look on."""
+"""Lease for the setup's controls: of several browsers one edits, the others watch."""
 
-GRACE_S = 2.0  # a page that is loaded anew comes back to its seat within this [s]
+GRACE_S = 2.0  # time for a reloading page to reclaim the lease [s]
 
 
-class Seat:
-    """Who drives. The first link does; when it leaves, the next to come within `GRACE_S`, else the
-    one that has waited longest. Used from one thread; times are seconds of any clock."""
+class EditorLease:
+    """Held by the first link. After it leaves, the next link to join within `GRACE_S` gets it, else the oldest one.
+    Used from one thread; times are seconds of any clock."""
 
     def __init__(self) -> None:
         self._links: list[object] = []
@@ -19,17 +19,17 @@ class Seat:
             self._driver = link
 
     def leave(self, link: object, now_s: float) -> None:
-        """A page is gone."""
+        """A page has disconnected."""
         self._links.remove(link)
         if self._driver is link:
             self._driver, self._free_since_s = None, now_s
 
     def take_over(self, link: object) -> None:
-        """This one drives from now on."""
+        """Give this page the lease."""
         self._driver = link
 
     def drives(self, link: object, now_s: float) -> bool:
-        """Whether this one drives."""
+        """True if this page holds the lease."""
         if self._driver is None and self._links and now_s - self._free_since_s >= GRACE_S:
             self._driver = self._links[0]
         return self._driver is link

@@ -1,26 +1,26 @@
-"""How a motion goes on: what share of each of the last steps a coming one is.
+"""Weights of the last steps of a motion for its extrapolation.
 
-A parabola through the last frames, by least squares, of which the speed counts the less the farther ahead one
-looks, and the acceleration little: both are noisy, and people stop. The shares were chosen on 75 clips of real
-motion with the tracker's own errors added; docs/prediction.md has the figures.
+Fits a parabola to the last frames by least squares. Damps the speed with the time ahead, and the acceleration
+strongly: both are noisy, and people stop. The constants were chosen on 75 clips of real motion with the tracker's own
+errors added; docs/prediction.md has the figures.
 """
 
 import math
 from collections.abc import Sequence
 
-WINDOW_S = 0.14  # of the frames that count: five at 30 Hz, nine at 60 [s]
+WINDOW_S = 0.14  # of the fit: five frames at 30 Hz, nine at 60 Hz [s]
 
 _SPEED_SHARE = 0.88
-_SPEED_HOLDS_S = 0.26  # after which a motion has been given up, on the average [s]
+_SPEED_HOLDS_S = 0.26  # time constant of the speed's decay [s]
 _ACCELERATION_SHARE = 0.2
 _LEAST_FOR_PARABOLA = 5  # frames
 
 
-def step_shares(ages_s: Sequence[float], ahead_s: float) -> list[float]:
-    """The move from the newest frame to `ahead_s` [s] after it, as shares of the steps between frames.
+def step_weights(ages_s: Sequence[float], ahead_s: float) -> list[float]:
+    """The motion from the newest frame to `ahead_s` [s] later, as weights of the steps between frames.
 
-    ages_s (n,): of the frames, newest first, the first of them 0, rising strictly. Of the n - 1 shares the first
-    belongs to the step between the newest two; one frame has none.
+    ages_s (n,): of the frames, newest first, beginning with 0, strictly rising. Returns n - 1 weights; the first
+    belongs to the newest step.
     """
     n = len(ages_s)
     if n < 2:
@@ -37,16 +37,16 @@ def step_shares(ages_s: Sequence[float], ahead_s: float) -> list[float]:
 
 
 def _slopes(ages_s: Sequence[float]) -> tuple[list[float], list[float]]:
-    """The weights (n,) with which the frames' values give the first and the second coefficient of the polynomial in
-    time, at the newest frame [1/s, 1/s^2]."""
+    """The weights (n,) of the frames' values in the first and the second coefficient of the least-squares polynomial
+    in time, at the newest frame [1/s, 1/s^2]."""
     n = len(ages_s)
-    times = [-age / WINDOW_S for age in ages_s]  # of the order of one, for the equations' sake
+    times = [-age / WINDOW_S for age in ages_s]  # of the order of one, for conditioning
     s1, s2 = math.fsum(times), math.fsum(t * t for t in times)
     if n < _LEAST_FOR_PARABOLA:
         spread = n * s2 - s1 * s1
         return [(n * t - s1) / (spread * WINDOW_S) for t in times], [0.0] * n
     s3, s4 = math.fsum(t**3 for t in times), math.fsum(t**4 for t in times)
-    # the rows of the inverse of [[n s1 s2] [s1 s2 s3] [s2 s3 s4]] that belong to the two
+    # rows two and three of the inverse of [[n s1 s2] [s1 s2 s3] [s2 s3 s4]]
     m01, m02 = s2 * s3 - s1 * s4, s1 * s3 - s2 * s2
     m11, m12, m22 = n * s4 - s2 * s2, s1 * s2 - n * s3, n * s2 - s1 * s1
     whole = n * (s2 * s4 - s3 * s3) + s1 * m01 + s2 * m02

@@ -14,7 +14,7 @@ from mocapd.cli.options import (
 
 
 def add_to(app: typer.Typer) -> None:
-    """Make it a command."""
+    """Register the command."""
     app.command("camera-node")(camera_node)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mocapd.errors import CannotCreateError, mend_of
-from mocapd.web import kept_key
+from mocapd.web import stored_key
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT])
@@ -17,9 +17,9 @@ def test_on_a_full_disk_room_is_the_mend(
     def full(*_args: object, **_kwargs: object) -> None:
         raise OSError(number, os.strerror(number))
 
-    monkeypatch.setattr(kept_key, "whole_file", full)
+    monkeypatch.setattr(stored_key, "whole_file", full)
     with pytest.raises(CannotCreateError) as caught:
-        kept_key.kept_key(tmp_path / "metrics.key")
+        stored_key.stored_key(tmp_path / "metrics.key")
     assert caught.value.fix == "make room on that disk"
     assert os.strerror(number) in caught.value.what
 

@@ -1,4 +1,4 @@
-"""A key that is made once, and kept in the state directory for our user alone: who has it is let in to one thing."""
+"""An access key that is made once and stored in the state directory, readable by our user only."""
 
 import re
 import secrets
@@ -13,23 +13,23 @@ _LONGEST_FILE = 1 << 10  # [bytes]
 
 
 def new_key() -> str:
-    """One that nobody can guess."""
+    """A random key."""
     return secrets.token_urlsafe(24)
 
 
-def kept_key(path: Path) -> str:
-    """The key of the file, which is made if need be. Raises InputError for one that holds no key,
+def stored_key(path: Path) -> str:
+    """The key in the file, which it makes if missing. Raises InputError for a file without a valid key,
     CannotCreateError."""
     try:
         key = read_text(path, _LONGEST_FILE).strip()
     except MissingError:
-        return _made(path)
+        return _make(path)
     if not _KEY.fullmatch(key):
         raise InputError("holds no key", str(path), "remove it: the next start makes another")
     return key
 
 
-def _made(path: Path) -> str:
+def _make(path: Path) -> str:
     key = new_key()
     try:
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
