@@ -16,9 +16,9 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry import rotations
+from mocapd.tracking.hypotheses.axial_turn import seen_between_m, turn_about_rad
 from mocapd.tracking.hypotheses.base import Judged, Situation
 from mocapd.tracking.hypotheses.keypoint_poses import best_start
-from mocapd.types import Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,10 +71,11 @@ def turned_legs(
     joints_m, globals_xyzw = fitter.joints(state)
     for side in SIDES:
         leg, toes = LIMBS[f"{side}_leg"], INDEX[side + "Toes"]
-        seen_m = _seen_foot_m(joints, leg.end, toes, params)
+        seen_m = seen_between_m(joints, leg.end, toes, params.most_sd_m)
         along = joints_m[leg.end] - joints_m[leg.upper]
         along /= max(float(np.linalg.norm(along)), 1e-9)
-        turn_rad = _turn_about(along, joints_m[toes] - joints_m[leg.end], seen_m, params.shortest_m)
+        now_m = joints_m[toes] - joints_m[leg.end]
+        turn_rad = turn_about_rad(along, now_m, seen_m, params.shortest_m)
         if abs(turn_rad) <= params.away_rad:
             continue
         turn = rotations.multiply(rotations.exp(turn_rad * along), globals_xyzw[leg.upper])
@@ -82,20 +83,3 @@ def turned_legs(
         parent = globals_xyzw[PARENTS[leg.upper]]
         local[leg.upper] = rotations.multiply(rotations.inverse(parent), turn)
         yield replace(state, local_xyzw=rotations.canonical(local)), (f"{side}_leg",)
-
-
-def _seen_foot_m(joints: JointTerm, ankle: int, toes: int, params: FootHeadingParams) -> Floats:
-    """From ankle to toes (3,), as the cameras' rays cross there; 0 where they do not tell."""
-    (ankle_m, of_ankle), (toes_m, of_toes) = joints.triangulated(ankle), joints.triangulated(toes)
-    if not (np.isfinite(of_ankle).all() and np.isfinite(of_toes).all()):
-        return np.zeros(3)
-    variance = max(np.linalg.eigvalsh(of_ankle)[-1], np.linalg.eigvalsh(of_toes)[-1])
-    return toes_m - ankle_m if variance <= params.most_sd_m**2 else np.zeros(3)
-
-
-def _turn_about(axis: Floats, one: Floats, other: Floats, shortest: float) -> float:
-    """The angle about the axis (3,) from one vector (3,) to the other [rad]; 0 where one of them is too short across it."""
-    a, b = one - (one @ axis) * axis, other - (other @ axis) * axis
-    if min(np.linalg.norm(a), np.linalg.norm(b)) < shortest:
-        return 0.0
-    return float(np.arctan2(axis @ np.cross(a, b), a @ b))

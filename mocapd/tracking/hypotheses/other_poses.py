@@ -8,6 +8,7 @@ from mocapd.tracking.hypotheses.front_back_flip import FrontBackFlip
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 from mocapd.tracking.hypotheses.limb_poses import ArmPoses, LegPoses
 from mocapd.tracking.hypotheses.limb_swap import LimbSwap
+from mocapd.tracking.hypotheses.pelvis_heading import PelvisHeading
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 
@@ -18,6 +19,7 @@ class OtherPoses:
         """cascade: of frontal faces."""
         self._always: dict[str, PoseHypothesis] = {
             "keypoint_poses": KeypointPoses(params.seen_pose),
+            "pelvis_heading": PelvisHeading(params.pelvis_heading),
             "foot_heading": FootHeading(params.foot_heading),
         }
         self._searched: dict[str, PoseHypothesis] = {

@@ -12,6 +12,7 @@ from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
 from mocapd.tracking.hypotheses.foot_heading import FootHeadingParams
 from mocapd.tracking.hypotheses.front_back_flip import FlipParams
 from mocapd.tracking.hypotheses.limb_swap import LimbSwapParams
+from mocapd.tracking.hypotheses.pelvis_heading import PelvisHeadingParams
 from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams
 from mocapd.tracking.planted_feet import PlantedFeetParams
 from mocapd.tracking.velocity import VelocityParams
@@ -119,6 +120,7 @@ class ClothesParams:
     depths: SeenDepthParams = field(default_factory=SeenDepthParams)
     joints: JointViewParams = field(default_factory=JointViewParams)
     seen_pose: SeenPoseParams = field(default_factory=SeenPoseParams)
+    pelvis_heading: PelvisHeadingParams = field(default_factory=PelvisHeadingParams)
     foot_heading: FootHeadingParams = field(default_factory=FootHeadingParams)
     distances: MeasuringParams = field(
         default_factory=lambda: MeasuringParams(points=10, leg_points=24)
