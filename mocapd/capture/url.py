@@ -19,11 +19,10 @@ _MJPG = cv2.VideoWriter.fourcc(*"MJPG")
 
 
 class UrlSource:
-    """Frames are stamped on arrival: the network's delay is not known, so give wired cameras the preference.
+    """Frames are stamped on arrival, without the network's delay; so prefer wired cameras.
 
-    `size_px` (width, height), when given, must be what the camera sends. Motion JPEG is decoded here, for
-    the files are wanted as they come; `torn` counts those that were damaged and left out. Raises ConfigError
-    for what is no address. Whatever is told of it hides its password.
+    `size_px` (width, height), when given, must be what the camera sends. Motion JPEG is decoded here, as other parts use
+    the files; `torn` counts damaged ones. Messages hide the password. Raises ConfigError for an invalid address.
     """
 
     recorded = False

@@ -1,7 +1,7 @@
-"""Which codec a video is of, and what to do about one that cannot be decoded here.
+"""Identifies the codec of a video, and how to convert one that cannot be decoded here.
 
-OpenCV's wheels decode by the FFmpeg that they carry, which has no decoder for AV1 but those of graphics cards. That a
-codec cannot be read shows as a stream that opens and yields no frame, as damage does: the codec tells them apart.
+OpenCV's wheels decode by the FFmpeg that they carry, which has no decoder for AV1 but those of graphics cards. An
+unsupported codec yields a stream without frames, as damage does; its code distinguishes the two.
 """
 
 import shlex

@@ -64,7 +64,7 @@ def video_times(path: Path, most_frames: int | None = None) -> VideoTimes:
 
 
 def times_of_stamps(stamps_s: Floats, header_hz: float, start_s: float = 0.0) -> VideoTimes:
-    """What stamps (F,) [s] say, of a file whose header states a rate; `start_s` is the first one's own time."""
+    """Times from stamps (F,) [s] and the header's rate; `start_s` is the file's time of the first frame."""
     unknown = _unknown(stamps_s)
     no_gaps = np.empty((0, 2), dtype=np.int_)
     if unknown:

@@ -196,12 +196,12 @@ def _beside(folder: Path, key: Key, value: Any, where: str) -> Any:
 
 
 def _camera_beside(folder: Path, camera: CameraSection) -> CameraSection:
-    from mocapd.capture.kinds.source_kinds import address_beside  # imports every kind of source
+    from mocapd.capture.kinds.source_kinds import address_in_folder  # imports every kind of source
 
     strokes = camera.white_balance
     return replace(
         camera,
-        source=address_beside(folder, camera.source),
+        source=address_in_folder(folder, camera.source),
         white_balance=folder / user_path(strokes) if strokes else None,
     )
 

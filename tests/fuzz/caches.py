@@ -6,7 +6,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from mocapd.app.daemon.cache_warmup import prepare_apart
+from mocapd.app.daemon.cache_warmup import prepare_in_processes
 from mocapd.config.sections import Config
 from mocapd.session.prepared_marker import MARKER
 from mocapd.shirt.pose_database import database_file
@@ -130,11 +130,11 @@ def markers(place: Place) -> Attempt:
     path = place.folder / MARKER
     good = b"".join(b"%064x\n" % (1 << 200 | n) for n in range(4))
     path.write_bytes(good)
-    prepare_apart(config)  # without a camera, so that its processes end at once
+    prepare_in_processes(config)  # without a camera, so that its processes end at once
 
     def attempt(random: Random, number: int) -> bool:
         path.write_bytes(damaged(random, good))
-        prepare_apart(config)
+        prepare_in_processes(config)
         return True
 
     return attempt

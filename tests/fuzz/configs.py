@@ -6,7 +6,7 @@ from random import Random
 from mocapd.assets import asset_path
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
 from mocapd.capture.kinds.source_kinds import (
-    address_beside,
+    address_in_folder,
     cameras_of_origin,
     identity_of,
     is_simulated,
@@ -191,7 +191,7 @@ def cameras(place: Place) -> Attempt:
         identity_of(text)
         if is_simulated(text):
             cameras_of_origin(origin_of(text))
-        address_beside(place.folder, text)
+        address_in_folder(place.folder, text)
         open_source(text, SourceRequest(size_px=(64, 48)))
 
     for good in (str(film), f"{capture}#cam1", "rtsp://10.0.0.2/stream", "0", texts[0]):

@@ -139,7 +139,7 @@ def step_list() -> None:
 
 def step_usb() -> None:
     for one in usb_webcams():
-        say("pyusb", one.identity, repr(one.product), "serial known:", one.serial_known)
+        say("pyusb", one.identity, repr(one.product), "serial known:", one.has_serial)
     for identity, node in capture_nodes().items():
         say("sysfs", identity, node.node)
 

@@ -1,4 +1,4 @@
-"""`mocapd calibrate --from-folder`: from recordings of a board to a file, without a page."""
+"""Implementation of `mocapd calibrate --from-folder`: calibrates from recordings of a board, without a page."""
 
 import json
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ _WORTH_SAYING = 0.1  # frames that a camera exposes later than the first
 
 @dataclass(frozen=True, slots=True)
 class FolderOptions:
-    """What was said on the command line; None or "" where it was not."""
+    """Command line options; None or "" when not given."""
 
     folder: Path
     out: Path | None
@@ -40,7 +40,7 @@ class FolderOptions:
 
 
 def calibrate_folder(options: FolderOptions, config: "Config") -> None:
-    """Find the board, solve, write. Raises MocapdError; what is there already stays then."""
+    """Detects the board, solves, writes the file. Raises MocapdError and then changes no file."""
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs
 
@@ -60,14 +60,14 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
     target.check()
     with ProgressBars() as progress:
         found = solve(options.folder, spec, progress, options.floor_frame)
-    found = _with_notes(found, _unrecorded(found.rig.names, [one.id for one in config.camera]))
+    found = _with_notes(found, _missing_recordings(found.rig.names, [c.id for c in config.camera]))
     if out.suffix == ".toml":
         from mocapd.app.setup.saving_from_folder import save_from_folder, stroked_pictures
 
         strokes = options.strokes
         pictures = stroked_pictures(strokes, found.rig) if strokes is not None else {}
         if strokes is not None:
-            found = _with_notes(found, _unpainted(set(found.rig.names) - set(pictures)))
+            found = _with_notes(found, _missing_strokes(set(found.rig.names) - set(pictures)))
         floor_known = options.floor_frame is not None
         save_from_folder(out, found, options.folder, floor_known, pictures, config.camera)
     else:
@@ -84,8 +84,8 @@ def _with_notes(found: "FolderCalibration", notes: tuple[str, ...]) -> "FolderCa
     return replace(found, notes=(*found.notes, *notes))
 
 
-def _unrecorded(recorded: Sequence[str], configured: Sequence[str]) -> tuple[str, ...]:
-    """Names the cameras of the configuration that have no recording, where others of it have one."""
+def _missing_recordings(recorded: Sequence[str], configured: Sequence[str]) -> tuple[str, ...]:
+    """A note that names configured cameras without a recording, if other configured cameras have one."""
     missing = [name for name in configured if name not in recorded]
     if not missing or len(missing) == len(configured):
         return ()
@@ -95,8 +95,8 @@ def _unrecorded(recorded: Sequence[str], configured: Sequence[str]) -> tuple[str
     )
 
 
-def _unpainted(names: set[str]) -> tuple[str, ...]:
-    """Names the cameras without a picture of strokes."""
+def _missing_strokes(names: set[str]) -> tuple[str, ...]:
+    """A note that names cameras without stroke pictures."""
     files = ", ".join(f"{name}.png" for name in sorted(names))
     note = (
         f"--strokes lacks {files}: those cameras see the shirt's colours as in neutral light"
@@ -106,7 +106,7 @@ def _unpainted(names: set[str]) -> tuple[str, ...]:
 
 
 def _complete(options: FolderOptions) -> tuple[Path, "BoardSpec"]:
-    """The file to write and the board. Raises UsageError naming every option that is missing."""
+    """The output file and the board. Raises UsageError that names all missing options."""
     from mocapd.calibration.board_spec import BoardKind, BoardSpec, board_size
 
     wanted = {"--out": options.out, "--board-size": options.size, "--square": options.square_m}

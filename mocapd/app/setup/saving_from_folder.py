@@ -1,4 +1,4 @@
-"""A calibration from recordings as the file that the daemon runs on, with colours from stroke images."""
+"""Saves a calibration from recordings as the daemon's calibration file, with colours from stroke images."""
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
@@ -28,8 +28,8 @@ from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name
 
 
 def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
-    """NAME.png with NAME_strokes.png of each camera that has them. Raises InputError when none has, and
-    naming what is wrong with the strokes of one."""
+    """Reads NAME.png with NAME_strokes.png of each camera that has them. Raises InputError when none has, or for bad
+    strokes."""
     require_pictures(strokes)
     model = colour_model(())
     pictures = {}
@@ -54,10 +54,10 @@ def save_from_folder(
     pictures: Mapping[str, LabelledPicture],
     cameras: tuple[CameraSection, ...],
 ) -> None:
-    """Write it all. cameras: those of the configuration, whose sources are taken where the ids agree;
-    else a camera's source is its recording. Raises CannotCreateError."""
-    sources = {one.name: str(one.path.absolute()) for one in find_recordings(recordings)}
-    sources |= {one.id: one.source for one in cameras}
+    """Writes the file. cameras: of the configuration; a camera's source is the configured one of the same id, else its
+    recording. Raises CannotCreateError."""
+    sources = {r.name: str(r.path.absolute()) for r in find_recordings(recordings)}
+    sources |= {camera.id: camera.source for camera in cameras}
     area = found.play_area
     W = white_balances(pictures, colour_model(()))
     saved = SavedCalibration(

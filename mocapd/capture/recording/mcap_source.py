@@ -1,4 +1,4 @@
-"""One camera of a recording: the JPEGs that it delivered, decoded again, at their own times."""
+"""One camera of a recording: decodes its JPEGs at their recorded times."""
 
 import logging
 import threading

@@ -46,12 +46,12 @@ class CompressedImage(msgspec.Struct, frozen=True):
 
 
 def image_topic(camera: str) -> str:
-    """Where a camera's pictures are."""
+    """The topic of a camera's pictures."""
     return f"{_PREFIX}{camera}{_SUFFIX}"
 
 
 def camera_of(topic: str) -> str:
-    """The camera whose pictures are there; empty for any other topic."""
+    """The camera of a picture topic; empty for any other topic."""
     if not (topic.startswith(_PREFIX) and topic.endswith(_SUFFIX)):
         return ""
     return topic[len(_PREFIX) : -len(_SUFFIX)]

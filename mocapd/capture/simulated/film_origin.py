@@ -24,8 +24,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class FilmOrigin:
-    """See Origin. Its cameras share the film's beginning, which is when the first of them is opened. With `sockets`
-    they are plugged in and out."""
+    """See Origin. Its cameras share one start time, at the first opening. With `sockets` they can be unplugged."""
 
     def __init__(self, address: str, film: Film, sockets: Sockets | None = None) -> None:
         self.rig_source = address
@@ -108,7 +107,7 @@ class _FilmStart:
         with self._lock:
             if self._ns is None:
                 self._ns = monotonic_ns()
-                # with this whoever watches can say where the simulated person was
+                # lets a test compute the simulated person's pose at any time
                 _LOG.info(
                     "frame %d of the film %r is at %d ns of the monotonic clock, at %g Hz",
                     *(self._first, self._scenario.name, self._ns, self._scenario.fps_hz),

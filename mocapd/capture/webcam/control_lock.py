@@ -1,6 +1,6 @@
-"""A camera's automatics: set free to find their values, locked at what they found, given back at last.
+"""Locks a camera's automatics: enable them to settle, lock their values, restore the earlier state.
 
-All of it works on a `ControlDevice`, so beside the thread that streams. UVC cameras set a value only
+All functions use a `ControlDevice`, so they work while another thread streams. UVC cameras set a value only
 while its automatic is off, so an automatic goes before its value, each way.
 """
 
@@ -19,11 +19,11 @@ UNITS_PER_S = 10_000
 
 @runtime_checkable
 class Lockable(Protocol):
-    """A source whose camera can be set from outside while its thread reads it."""
+    """A source whose controls can be set while its thread reads."""
 
     @property
     def settings(self) -> WebcamSettings:
-        """What it asks for at each opening."""
+        """The settings of each opening."""
         ...
 
     def device(self) -> ControlDevice | None:
@@ -31,7 +31,7 @@ class Lockable(Protocol):
         ...
 
     def change(self, settings: WebcamSettings) -> None:
-        """Ask for this from the next opening on; another size or rate makes it open anew at once."""
+        """Sets the settings of the next opening; another size or rate reopens the camera at once."""
         ...
 
 
@@ -57,7 +57,7 @@ Held = Mapping[Control, int]
 
 
 def read_held(device: ControlDevice) -> Held:
-    """Everything that a lock may change. Raises UnavailableError."""
+    """Reads all controls that a lock may change. Raises UnavailableError."""
     values = {}
     for control in Control:
         value = device.read(control) if device.range(control) is not None else None
@@ -71,7 +71,7 @@ def set_free(device: ControlDevice, held: Held) -> None:
     if Control.DYNAMIC_FRAMERATE in held:
         device.write(Control.DYNAMIC_FRAMERATE, 0)
     for one in _AUTOMATICS:
-        # one that cannot be switched back would leave the camera with a value of nobody's choice
+        # without both controls the automatic's value could not be restored
         if one.switch not in held or one.value not in held:
             continue
         now = device.write(one.switch, one.on)
@@ -83,7 +83,7 @@ def lock(device: ControlDevice, held: Held, fps_hz: float, mains_hz: int | None 
     """Switch the automatics off and keep the values they have found.
 
     held: what the camera has; fps_hz: its rate, which no exposure may lower; mains_hz: 50 or 60 when
-    lamps are seen to flicker: the exposure becomes a multiple of their period, 1/100 or 1/120 s.
+    lamps flicker: the exposure becomes a multiple of their period, 1/100 or 1/120 s.
     Returns what the camera holds now, as it is asked for at each opening. Raises UnavailableError.
     """
     found = {one.value: device.read(one.value) for one in _AUTOMATICS if one.value in held}

@@ -1,4 +1,4 @@
-"""Why a /dev/video node cannot be used, said so that it can be mended."""
+"""Checks whether a /dev/video node can be used; the errors say the cause and the fix."""
 
 import errno
 import grp
@@ -36,7 +36,7 @@ def opened_node(node: Path) -> Iterator[int]:
 
 
 def check_usable(node: Path, fd: int) -> Capability:
-    """Raises UnavailableError when the node does not capture video or somebody streams from it."""
+    """Raises UnavailableError when the node does not capture video or is in use."""
     try:
         capability = query_capability(fd)
     except OSError as error:
@@ -85,8 +85,10 @@ def _group_fix(node: Path) -> str:
 
 
 def how_to_be_let_in(node: Path, gid: int) -> str:
-    """What gives this user a node that is of this group."""
-    if gid == 0:  # udev gives it to the group a moment after it came; nobody is to join root's
+    """The fix that gives this user access to a node of this group."""
+    if (
+        gid == 0
+    ):  # udev changes the group a moment after the node appears; never suggest to join root's group
         return f"wait a moment for udev; if it stays so: sudo chgrp video {node}"
     try:
         group = grp.getgrgid(gid).gr_name

@@ -1,7 +1,7 @@
-"""Whether the webcams of one USB bus fit on it, by estimate, and which lower mode would.
+"""Estimates whether the webcams of a USB bus fit on it, and which lower mode would fit.
 
-A camera reserves its share of the bus when it begins to stream; the one that comes too late gets
-nothing. Reservations are not told anywhere, so they are estimated from what is asked for.
+A camera reserves bandwidth when it begins to stream; the last one may get none. The kernel does not report the
+reservations, so they are estimated from the requested modes.
 """
 
 import math

@@ -16,15 +16,15 @@ VIDEO_CLASS = 14
 
 @dataclass(frozen=True, slots=True)
 class UsbWebcam:
-    """A USB device with a video interface. `serial_known` is False where the right to read it lacks."""
+    """A USB device with a video interface. `has_serial` is False without permission to read it."""
 
     identity: WebcamIdentity
     product: str
-    serial_known: bool
+    has_serial: bool
 
 
 def usb_webcams() -> tuple[UsbWebcam, ...]:
-    """Every video-class device that libusb sees; empty where there is no USB to be seen."""
+    """Every video-class device of libusb; empty without access to USB."""
     backend = libusb_package.get_libusb1_backend()
     if backend is None:
         return ()
@@ -47,10 +47,10 @@ def _webcam(device: usb.core.Device) -> UsbWebcam:
     # `address` changes at each plugging; the chain of port numbers belongs to the socket.
     ports = ".".join(str(port) for port in device.port_numbers or ())
     try:
-        serial, product, known = device.serial_number or "", device.product or "", True
+        serial, product, has_serial = device.serial_number or "", device.product or "", True
     except (ValueError, usb.core.USBError):  # no right to write to the USB node: "no langid"
-        serial, product, known = "", "", False
+        serial, product, has_serial = "", "", False
     identity = WebcamIdentity(
         f"{device.bus}-{ports}", f"{device.idVendor:04x}", f"{device.idProduct:04x}", serial
     )
-    return UsbWebcam(identity, product, known)
+    return UsbWebcam(identity, product, has_serial)

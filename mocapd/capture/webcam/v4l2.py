@@ -1,4 +1,4 @@
-"""A webcam through OpenCV and V4L2, opened by identity and let go at the first failure."""
+"""A webcam through OpenCV and V4L2, opened by identity and released at the first failure."""
 
 import logging
 from contextlib import ExitStack
@@ -39,7 +39,7 @@ _YUYV = "YUYV"
 
 @dataclass(frozen=True, slots=True)
 class WebcamSettings:
-    """What to ask of a webcam. `size_px` (width, height) must be got: the calibration belongs to it."""
+    """Requested mode of a webcam. `size_px` (width, height) is mandatory: the calibration depends on it."""
 
     size_px: tuple[int, int] = (640, 480)
     fps_hz: float = 30.0
@@ -48,7 +48,7 @@ class WebcamSettings:
 
 @dataclass(frozen=True, slots=True)
 class NegotiatedFormat:
-    """What the webcam says after opening; everything is read back, nothing assumed."""
+    """The actual mode after opening, all of it read back."""
 
     node: Path
     moved: bool  # found by vid:pid:serial in another socket than configured

@@ -1,4 +1,4 @@
-"""What cameras this machine has, and for each that cannot be used the reason (`mocapd cameras`)."""
+"""Lists the cameras of this machine, with the reason for each unusable one (`mocapd cameras`)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -69,7 +69,7 @@ def _node_info(node: VideoNode) -> CameraInfo:
     spec = str(node.identity) if node.identity and node.index == 0 else str(node.node)
     formats: tuple[PixelFormat, ...] = ()
     problem = fix = note = ""
-    captures = node.index == 0 or node.identity is None  # a guess, until the node tells
+    captures = node.index == 0 or node.identity is None  # a guess, until the node answers
     try:
         with opened_node(node.node) as fd:
             captures = _captures(fd, captures)
@@ -93,7 +93,7 @@ def _node_info(node: VideoNode) -> CameraInfo:
 def _captures(fd: int, guess: bool) -> bool:
     try:
         return bool(query_capability(fd).caps & CAP_VIDEO_CAPTURE)
-    except OSError:  # `check_usable` tells what is wrong
+    except OSError:  # `check_usable` reports the cause
         return guess
 
 
@@ -110,7 +110,7 @@ def _without_node(webcam: UsbWebcam) -> CameraInfo:
 
 
 def _with_twin_note(row: CameraInfo, rows: list[CameraInfo]) -> CameraInfo:
-    """Webcams of one vid:pid:serial can only be told apart by their sockets: say so."""
+    """Adds a note to twins: only their sockets distinguish webcams of one vid:pid:serial."""
     ports = {one.port_path for one in rows if row.identity and one.usb_id == row.usb_id}
     if len(ports) < 2 or row.note or row.problem:
         return row

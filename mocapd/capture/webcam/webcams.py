@@ -48,7 +48,7 @@ def _usb_device(device: Path) -> tuple[Path, str] | None:
 
 
 def usb_identity(folder: Path) -> WebcamIdentity:
-    """The identity of the USB device whose sysfs folder (named by its port path) this is."""
+    """The identity of a USB device. folder: its sysfs folder, named by its port path."""
     return WebcamIdentity(
         port_path=folder.name,
         vid=_text(folder / "idVendor").lower(),

@@ -1,7 +1,7 @@
 """Everything that the doctor looks at, asked once."""
 
 from mocapd.config.effective import Effective
-from mocapd.control.meant import daemons_found
+from mocapd.control.target_process import find_daemons
 from mocapd.doctor.facts import ConfigFacts, Facts, FactTrouble
 from mocapd.doctor.gathering.calibration_facts import calibration_facts
 from mocapd.doctor.gathering.camera_facts import camera_facts
@@ -24,7 +24,7 @@ def gathered(effective: Effective, trouble: FactTrouble | None) -> Facts:
     user = user_facts()
     return Facts(
         config=ConfigFacts(effective.file, trouble),
-        daemons=tuple(one.status for one in daemons_found(config).daemons),
+        daemons=tuple(one.status for one in find_daemons(config).daemons),
         user=user,
         states=state_facts(config, user),
         cameras=camera_facts(config, saved),

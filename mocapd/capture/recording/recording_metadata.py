@@ -1,7 +1,7 @@
-"""What a recording knows of cameras and wearer, as files inside of it: a rig file, the wearer, the shirt's pictures.
+"""Metadata of a recording, as attached files: the rig, the wearer, pictures of the shirt.
 
-`rig.json` and `wearer.json` are as in the capture format, as are the pictures with their strokes beside them:
-`white_balance/<camera>.png` and `model/<n>.png`. No address of a camera is among it, and so no password.
+The files have the capture format: `rig.json`, `wearer.json`, and pictures with stroke files,
+`white_balance/<camera>.png` and `model/<n>.png`. Camera addresses, which may hold passwords, are not included.
 """
 
 from collections.abc import Iterable, Mapping
@@ -38,8 +38,8 @@ class _WearerFile(msgspec.Struct, frozen=True):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RecordedKnown:
-    """None and empty: nobody said. model: the shirt in neutral light; white_balance: by camera."""
+class RecordingMetadata:
+    """None or empty: not recorded. model: the shirt in neutral light; white_balance: by camera."""
 
     rig: Rig | None = None
     stature_m: float | None = None
@@ -47,32 +47,33 @@ class RecordedKnown:
     white_balance: Mapping[str, LabelledPicture] = field(default_factory=dict)
 
 
-def attachments_of(known: RecordedKnown) -> list[McapAttachment]:
-    """The files that say it."""
+def attachments_of(metadata: RecordingMetadata) -> list[McapAttachment]:
+    """Encodes metadata as attached files."""
     found = []
-    if known.rig is not None:
-        rig = {"cameras": [camera_to_dict(camera) for camera in known.rig.cameras]}
+    if metadata.rig is not None:
+        rig = {"cameras": [camera_to_dict(camera) for camera in metadata.rig.cameras]}
         found.append(McapAttachment(RIG, _JSON, msgspec.json.encode(rig)))
-    if known.stature_m is not None:
-        wearer = msgspec.json.encode(_WearerFile(known.stature_m))
+    if metadata.stature_m is not None:
+        wearer = msgspec.json.encode(_WearerFile(metadata.stature_m))
         found.append(McapAttachment(WEARER, _JSON, wearer))
-    pictures = {f"{_WHITE}{name}": one for name, one in known.white_balance.items()}
-    pictures |= {f"{_MODEL}{number}": one for number, one in enumerate(known.model)}
+    pictures = {f"{_WHITE}{name}": p for name, p in metadata.white_balance.items()}
+    pictures |= {f"{_MODEL}{number}": p for number, p in enumerate(metadata.model)}
     for name, picture in pictures.items():
         found.append(McapAttachment(f"{name}.png", _PNG, _png(picture.pixels)))
         found.append(McapAttachment(f"{name}{_STROKES}.png", _PNG, _png(picture.labels)))
     return found
 
 
-def known_of(attachments: Iterable[McapAttachment], where: str) -> RecordedKnown:
-    """Back; of files of one name the last counts, others are left alone. Raises InputError or ConfigError."""
+def metadata_of(attachments: Iterable[McapAttachment], where: str) -> RecordingMetadata:
+    """Decodes the attached files; the last of one name wins, unknown files are ignored. Raises InputError or
+    ConfigError."""
     files = {one.name: one.data for one in attachments}
     pictures = {
         name.removesuffix(".png"): _labelled(data, files, name, where)
         for name, data in sorted(files.items())[: 2 * _MOST_PICTURES]
         if name.startswith((_WHITE, _MODEL)) and name.endswith(".png") and _STROKES not in name
     }
-    return RecordedKnown(
+    return RecordingMetadata(
         _rig(files[RIG], where) if RIG in files else None,
         _stature_m(files[WEARER], where) if WEARER in files else None,
         tuple(one for name, one in pictures.items() if name.startswith(_MODEL)),
