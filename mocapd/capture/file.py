@@ -10,7 +10,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 
 from mocapd.boundary.files import is_file
-from mocapd.boundary.pictures import MOST_PIXELS
+from mocapd.boundary.image_decoding import MOST_PIXELS
 from mocapd.capture.guard import GuardedCapture
 from mocapd.capture.pace import Pace
 from mocapd.capture.pixels import frozen_pixels

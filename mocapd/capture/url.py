@@ -4,7 +4,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
-from mocapd.boundary.pictures import MOST_PIXELS, decode_camera_picture
+from mocapd.boundary.image_decoding import MOST_PIXELS, decode_camera_picture
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import Openings

@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
 def complete_setting(incomplete: str) -> list[str]:
     """What --set may go on with at Tab: keys, and the values of one that has few."""
-    from mocapd.config.effective import known_keys
+    from mocapd.config.effective import all_keys
 
     key, has_value, _ = incomplete.partition("=")
     if not has_value:
-        return [f"{name}=" for name in known_keys() if name.startswith(key)]
+        return [f"{name}=" for name in all_keys() if name.startswith(key)]
     return [f"{key}={one}" for one in ("true", "false") if _is_switch(key)]
 
 
 def _is_switch(key: str) -> bool:
-    from mocapd.config.effective import known_keys
+    from mocapd.config.effective import all_keys
 
-    found = known_keys().get(key)
+    found = all_keys().get(key)
     return found is not None and isinstance(found.default, bool)
 
 

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.image_decoding import decode_picture
 from mocapd.capture.capture_folder import frame_sets, load_folder
 from mocapd.capture.frame_groups import as_set
 from mocapd.capture.kinds.folder_kind import FolderOrigin

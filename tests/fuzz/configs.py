@@ -14,8 +14,8 @@ from mocapd.capture.kinds.source_kinds import (
     origin_of,
 )
 from mocapd.capture.source_request import SourceRequest
-from mocapd.config.config_keys import shown
-from mocapd.config.effective import Effective, known_keys, load_config
+from mocapd.config.config_keys import as_toml
+from mocapd.config.effective import Effective, all_keys, load_config
 from mocapd.config.sources import env_name
 from mocapd.outputs.osc.osc_sink import parse_destination
 from mocapd.outputs.zenoh.zenoh_config import Params, is_loopback, listen_endpoints, session_config
@@ -141,7 +141,7 @@ def files(place: Place) -> Attempt:
 
 def flags(place: Place) -> Attempt:
     """Every nasty text in every flag and variable."""
-    keys = tuple(known_keys())
+    keys = tuple(all_keys())
     cases = [(key, text, flag) for key in keys for text in _TEXTS for flag in (True, False)]
 
     def take(case: tuple[str, str, bool]) -> bool:
@@ -156,7 +156,7 @@ def flags(place: Place) -> Attempt:
 
 def _show(effective: Effective) -> None:
     for setting in effective.settings:
-        shown(setting.value)
+        as_toml(setting.value)
 
 
 def scenarios(place: Place) -> Attempt:

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.image_decoding import decode_picture
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.capture.simulated.socket_camera import SocketCamera

@@ -12,9 +12,9 @@ from msgspec import Meta
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import ClientConnection, connect
 
+from mocapd.boundary.image_decoding import MOST_FILE_BYTES
 from mocapd.boundary.mcap_records import McapAttachment
 from mocapd.boundary.parsing import decode_json
-from mocapd.boundary.pictures import MOST_FILE_BYTES
 from mocapd.errors import MalformedError, UnavailableError
 from mocapd.outputs.mcap.recording_writer import RecordingWriter
 from mocapd.web.runtime_file import Running, running

@@ -13,7 +13,7 @@ from mocapd.app.daemon.notifier import Notifier
 from mocapd.app.daemon.unsafe_settings import unsafe_settings
 from mocapd.app.terminal.logs import set_up_logs
 from mocapd.config.effective import Effective
-from mocapd.config.live_changes import taken_live
+from mocapd.config.live_changes import apply_live_changes
 from mocapd.control.control_messages import Reloaded
 from mocapd.control.reloads import Reloads
 from mocapd.errors import MocapdError
@@ -58,7 +58,7 @@ class _Preparation:
     def _run(self) -> None:
         try:
             effective = self._read()
-            config, waiting = taken_live(self._service.config, effective.config)
+            config, waiting = apply_live_changes(self._service.config, effective.config)
             session = open_session(config, _quiet)
         except MocapdError as error:
             self.refused = error

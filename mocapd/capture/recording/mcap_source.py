@@ -5,8 +5,8 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.boundary.mcap_records import McapFile, McapMessage
-from mocapd.boundary.pictures import decode_camera_picture
 from mocapd.capture.pace import Pace
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.recording.recorded_picture import IMAGE, camera_of, decode_picture_message

@@ -11,10 +11,10 @@ from typing import Any
 import cv2
 import msgspec
 
+from mocapd.boundary.image_decoding import MOST_DRAWN_PIXELS, decode_picture
 from mocapd.boundary.mcap_records import McapAttachment
 from mocapd.boundary.numbers import finite_number
 from mocapd.boundary.parsing import decode_json
-from mocapd.boundary.pictures import MOST_DRAWN_PIXELS, decode_picture
 from mocapd.capture.capture_folder import STATURES_M
 from mocapd.errors import ConfigError, InputError, MalformedError
 from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict

@@ -4,7 +4,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 from dataclasses import dataclass
 
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import PictureStamp

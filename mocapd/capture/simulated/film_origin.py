@@ -5,7 +5,7 @@ import threading
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.base import Source
 from mocapd.capture.file import check_size
 from mocapd.capture.origin import Progress, split_address

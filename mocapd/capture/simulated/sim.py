@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import CameraLost, ConfigError, InputError, MalformedError

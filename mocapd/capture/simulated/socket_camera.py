@@ -8,7 +8,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.base import Source
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.simulated.sockets import Fault, FoundSocket, Sockets

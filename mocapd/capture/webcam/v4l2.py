@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from cv2.typing import MatLike
 
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import Openings
 from mocapd.capture.pixels import delivered_jpeg, frozen_pixels

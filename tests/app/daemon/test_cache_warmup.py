@@ -139,7 +139,7 @@ def test_the_preparation_ends_with_who_began_it(tmp_path: Path, killed: bool) ->
         "from mocapd.config.sections import Config\n"
         "def work(config, tell):\n"
         "    print(os.getpid(), flush=True)\n"
-        "    cache_warmup._all_end_well(config, (deep,))\n"
+        "    cache_warmup._all_succeed(config, (deep,))\n"
         "def deep(config):\n"
         "    print(os.getpid(), flush=True)\n"
         "    time.sleep(600)\n"
