@@ -19,7 +19,7 @@ from mocapd.boundary.numbers import brief
 from mocapd.boundary.parsing import decode_msgpack
 from mocapd.calibrate.bump.landmarks import Landmarks, landmarks_at
 from mocapd.errors import InputError, MocapdError, NewerFileError
-from mocapd.set_aside import Why, set_aside
+from mocapd.quarantine import Why, quarantine
 from mocapd.types import Camera
 from mocapd.whole_file import whole_file
 
@@ -81,7 +81,7 @@ class RoomMemory:
         where = ""
         with suppress(OSError):  # the next start tries again
             why: Why = "newer" if isinstance(error, NewerFileError) else "corrupt"
-            where = f", and is now {set_aside(self._path, why).name}"
+            where = f", and is now {quarantine(self._path, why).name}"
         _log.warning(
             "%s cannot be used (%s)%s; until a new one is written only the USB ports distinguish identical cameras",
             *(self._path, error.what, where),

@@ -13,7 +13,7 @@ from mocapd.boundary.urls import without_password
 from mocapd.calibration.calibration_writing import remove_setup
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import CannotCreateError, InputError, MocapdError, NewerFileError
-from mocapd.set_aside import Why, set_aside
+from mocapd.quarantine import Why, quarantine
 from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -170,7 +170,7 @@ class SetupKeeper:
         """It cannot be read: whoever made it may still want it."""
         with suppress(OSError):  # it is met again then
             why: Why = "newer" if isinstance(error, NewerFileError) else "corrupt"
-            aside = set_aside(self._path, why)
+            aside = quarantine(self._path, why)
             _log.warning(
                 "%s: the setup that was kept there cannot be used (%s), and is kept as %s",
                 *(self._path, error.what, aside.name),

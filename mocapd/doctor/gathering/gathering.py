@@ -1,4 +1,4 @@
-"""Everything that the doctor looks at, asked once."""
+"""Gathers all facts once."""
 
 from mocapd.config.effective import Effective
 from mocapd.control.target_process import find_daemons
@@ -17,14 +17,14 @@ from mocapd.doctor.gathering.system_facts import (
 )
 
 
-def gathered(effective: Effective, trouble: FactTrouble | None) -> Facts:
-    """trouble: why the configuration proper cannot be used; `effective` is what is built in then."""
+def gather_facts(effective: Effective, trouble: FactTrouble | None) -> Facts:
+    """trouble: why the user's configuration is invalid; `effective` then holds the built-in values."""
     config = effective.config
     calibration, saved = calibration_facts(config)
     user = user_facts()
     return Facts(
         config=ConfigFacts(effective.file, trouble),
-        daemons=tuple(one.status for one in find_daemons(config).daemons),
+        daemons=tuple(daemon.status for daemon in find_daemons(config).daemons),
         user=user,
         states=state_facts(config, user),
         cameras=camera_facts(config, saved),
