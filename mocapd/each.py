@@ -20,4 +20,4 @@ class Each(Protocol):
 
 def in_turn(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
     """See Each."""
-    return [work(one) for one in of]
+    return [work(item) for item in of]

@@ -39,16 +39,16 @@ def read_header(data: bytes | memoryview) -> PictureHeader:
     """Parses the header of a PNG or JPEG. Raises MalformedError, also for impossible values."""
     data = memoryview(data)
     kind: Literal["png", "jpeg"]
-    found: PngHeader | JpegHeader
+    detail: PngHeader | JpegHeader
     if is_png(data):
-        kind, found = "png", png_header(data)
+        kind, detail = "png", png_header(data)
     elif is_jpeg(data):
-        kind, found = "jpeg", jpeg_header(data)
+        kind, detail = "jpeg", jpeg_header(data)
     else:
         raise MalformedError("is neither PNG nor JPEG")
-    if min(found.size_px) < 1:
+    if min(detail.size_px) < 1:
         raise MalformedError("has no pixels")
-    return PictureHeader(kind, found.size_px, found.channels, found.bits, found)
+    return PictureHeader(kind, detail.size_px, detail.channels, detail.bits, detail)
 
 
 def is_plain_jpeg(data: bytes, size_px: tuple[int, int]) -> bool:

@@ -36,13 +36,13 @@ def without_password(text: str) -> str:
     A password extends to the last `@`, as users write `/`, `#` and `?` in it unescaped. Also hides query parameters with
     the names of secrets, which many network cameras use.
     """
-    found = _CREDENTIALS.match(text)
-    if found and _SECRET_QUERY.search(found[2]):
-        return f"{found[1]}{HIDDEN}"  # the `@` may be of either secret
-    if found:
-        user, colon, _ = found[2].partition(":")
+    match = _CREDENTIALS.match(text)
+    if match and _SECRET_QUERY.search(match[2]):
+        return f"{match[1]}{HIDDEN}"  # the `@` may be of either secret
+    if match:
+        user, colon, _ = match[2].partition(":")
         shown = f"{user}:{HIDDEN}" if colon else user
-        text = f"{found[1]}{shown}@{text[found.end() :]}"
+        text = f"{match[1]}{shown}@{text[match.end() :]}"
     return _SECRET_QUERY.sub(rf"\g<1>{HIDDEN}", text) if "://" in text else text
 
 
@@ -58,7 +58,7 @@ def without_passwords(text: str) -> str:
     """
     if _ADDRESS.match(text):
         return without_password(text)
-    return _ADDRESS.sub(lambda found: without_password(found[0]), text)
+    return _ADDRESS.sub(lambda match: without_password(match[0]), text)
 
 
 def has_password(text: str) -> bool:

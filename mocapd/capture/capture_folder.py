@@ -184,7 +184,7 @@ def _lost(value: object, frames: int, where: str) -> tuple[tuple[int, int], ...]
         raise ConfigError(
             f"'lost_frames' must be pairs of frames, is {brief(value)}", where, "correct the file"
         )
-    pairs = ([int(_number(one, "lost_frames", 0, frames, where)) for one in span] for span in spans)
+    pairs = ([int(_number(n, "lost_frames", 0, frames, where)) for n in span] for span in spans)
     return tuple((first, last) for first, last in pairs)
 
 
@@ -271,6 +271,6 @@ def sources_in_step(sources: Sequence[FileSource]) -> Iterator[FrameSet]:
                         _LOG.warning("%s", end)
             if not ahead:
                 return
-            present = {one.name: ahead[one.name] for one in sources if one.name in ahead}
-            apart_ns = half_period_ns(max(one.fps_hz for one in sources))
+            present = {s.name: ahead[s.name] for s in sources if s.name in ahead}
+            apart_ns = half_period_ns(max(source.fps_hz for source in sources))
             yield as_set({name: ahead.pop(name) for name in due_frames(present, apart_ns)})

@@ -43,10 +43,10 @@ def find_daemons(config: "Config") -> FoundDaemons:
 
 def target_daemon(config: "Config") -> RunningDaemon:
     """The daemon that a command addresses. Raises MocapdError."""
-    found = find_daemons(config)
-    chosen = select_targets(found.daemons, config)
+    search = find_daemons(config)
+    chosen = select_targets(search.daemons, config)
     if not chosen:
-        raise no_daemon_error(found)
+        raise no_daemon_error(search)
     if len(chosen) > 1:
         names = ", ".join(f"{daemon.instance} (pid {daemon.status.pid})" for daemon in chosen)
         raise ConfigError(
@@ -55,15 +55,15 @@ def target_daemon(config: "Config") -> RunningDaemon:
     return chosen[0]
 
 
-def no_daemon_error(found: FoundDaemons) -> UnavailableError | PermissionDeniedError:
+def no_daemon_error(search: FoundDaemons) -> UnavailableError | PermissionDeniedError:
     """The error when no daemon answers."""
-    if found.silent:
+    if search.silent:
         return UnavailableError(
-            "runs, but does not answer", str(found.silent[0]), "see its log, or restart it"
+            "runs, but does not answer", str(search.silent[0]), "see its log, or restart it"
         )
-    if found.foreign:
+    if search.foreign:
         return PermissionDeniedError(
-            "a daemon of another user is running", str(found.foreign[0]), "ask with sudo"
+            "a daemon of another user is running", str(search.foreign[0]), "ask with sudo"
         )
     return UnavailableError(
         "no mocapd of yours is running", "this machine", "start it: `mocapd run`"

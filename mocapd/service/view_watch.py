@@ -73,7 +73,7 @@ class ViewWatch:
     def off_m(self) -> float:
         """Lasting disagreement of the views in the last comparison [m]. Includes the motion of a person within a camera's
         delay, which is not corrected here."""
-        late_s = max((abs(one.late_s) for one in self._result.findings), default=0.0)
+        late_s = max((abs(finding.late_s) for finding in self._result.findings), default=0.0)
         return max(self._result.off_m, _SPEED_M_S * late_s)
 
     def _run(self) -> None:

@@ -64,12 +64,12 @@ def _samples(frames: list[SkeletonFrame]) -> Samples:
     joints = [list(frame.joints.values()) for frame in frames]
     return Samples(
         np.array([frame.capture_unix_ns for frame in frames], dtype=np.int64),
-        np.array([[one.p for one in each] for each in joints]).reshape(*shape, 3),
-        np.array([[one.r for one in each] for each in joints]).reshape(*shape, 4),
-        np.array([[one.c for one in each] for each in joints]).reshape(shape),
-        np.array(
-            [[math.inf if one.u is None else one.u for one in each] for each in joints]
-        ).reshape(shape),
+        np.array([[j.p for j in row] for row in joints]).reshape(*shape, 3),
+        np.array([[j.r for j in row] for row in joints]).reshape(*shape, 4),
+        np.array([[j.c for j in row] for row in joints]).reshape(shape),
+        np.array([[math.inf if j.u is None else j.u for j in row] for row in joints]).reshape(
+            shape
+        ),
     )
 
 

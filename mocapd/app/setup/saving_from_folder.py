@@ -37,9 +37,9 @@ def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
         image = strokes / f"{camera.name}.png"
         if not is_file(image):
             continue
-        one = read_labelled(image)
-        require_good_strokes(one.pixels, one.labels, model, str(strokes_beside(image)))
-        pictures[camera.name] = one
+        picture = read_labelled(image)
+        require_good_strokes(picture.pixels, picture.labels, model, str(strokes_beside(image)))
+        pictures[camera.name] = picture
     if not pictures:
         names = ", ".join(f"{name}.png" for name in rig.names)
         raise InputError("holds no picture of a camera", str(strokes), f"put {names} there")
@@ -48,7 +48,7 @@ def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
 
 def save_from_folder(
     out: Path,
-    found: FolderCalibration,
+    result: FolderCalibration,
     recordings: Path,
     floor_known: bool,
     pictures: Mapping[str, LabelledPicture],
@@ -58,7 +58,7 @@ def save_from_folder(
     recording. Raises CannotCreateError."""
     sources = {r.name: str(r.path.absolute()) for r in find_recordings(recordings)}
     sources |= {camera.id: camera.source for camera in cameras}
-    area = found.play_area
+    area = result.play_area
     W = white_balances(pictures, colour_model(()))
     saved = SavedCalibration(
         schema=SCHEMA,
@@ -69,14 +69,14 @@ def save_from_folder(
         ),
         room=RoomFit(
             method="board",
-            rms_px=figure(found.rms_px),
+            rms_px=figure(result.rms_px),
             play_area_cm=None if area is None else figure(area.median_cm),
             floor_known=floor_known,
         ),
-        board=found.board,
+        board=result.board,
         camera=tuple(
-            _camera(one, sources[one.name], found.cameras[one.name], W.get(one.name))
-            for one in found.rig.cameras
+            _camera(camera, sources[camera.name], result.cameras[camera.name], W.get(camera.name))
+            for camera in result.rig.cameras
         ),
     )
     write_calibration(out, saved, pictures, own_folder=False)

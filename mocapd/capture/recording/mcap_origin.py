@@ -61,7 +61,7 @@ class McapOrigin:
         longest_ns = round(0.5 * NS_PER_S / self.fps_hz)
         held: dict[str, Frame] = {}
         for frame in pictures(self.path, self.rig, self.start_ns):
-            first_ns = min((one.t_ns for one in held.values()), default=frame.t_ns)
+            first_ns = min((picture.t_ns for picture in held.values()), default=frame.t_ns)
             if held and (frame.camera in held or frame.t_ns - first_ns > longest_ns):
                 yield as_set({name: held[name] for name in order if name in held})
                 held = {}
@@ -72,7 +72,7 @@ class McapOrigin:
     def source(self, address: str, request: SourceRequest) -> Source:
         """See Origin. The only camera is meant when an address names none."""
         camera = split_address(address)[1]
-        cameras = {one.name: one for one in self.rig.cameras if one.name in self.counts}
+        cameras = {camera.name: camera for camera in self.rig.cameras if camera.name in self.counts}
         if not camera and len(cameras) == 1:
             camera = next(iter(cameras))
         if camera not in cameras:
@@ -112,7 +112,7 @@ def open_recording(path: Path) -> McapOrigin:
 
 def _rate_hz(times: Mapping[str, list[int]]) -> float:
     """The common rate of the cameras: by the median distance of one's pictures."""
-    longest = max(times.values(), key=lambda one: len(one))  # noqa: PLW0108
+    longest = max(times.values(), key=lambda stamps: len(stamps))  # noqa: PLW0108
     steps = sorted(after - before for before, after in pairwise(sorted(longest)))
     if not steps:
         return 30.0

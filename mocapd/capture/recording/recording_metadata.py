@@ -49,25 +49,25 @@ class RecordingMetadata:
 
 def attachments_of(metadata: RecordingMetadata) -> list[McapAttachment]:
     """Encodes metadata as attached files."""
-    found = []
+    files = []
     if metadata.rig is not None:
         rig = {"cameras": [camera_to_dict(camera) for camera in metadata.rig.cameras]}
-        found.append(McapAttachment(RIG, _JSON, msgspec.json.encode(rig)))
+        files.append(McapAttachment(RIG, _JSON, msgspec.json.encode(rig)))
     if metadata.stature_m is not None:
         wearer = msgspec.json.encode(_WearerFile(metadata.stature_m))
-        found.append(McapAttachment(WEARER, _JSON, wearer))
+        files.append(McapAttachment(WEARER, _JSON, wearer))
     pictures = {f"{_WHITE}{name}": p for name, p in metadata.white_balance.items()}
     pictures |= {f"{_MODEL}{number}": p for number, p in enumerate(metadata.model)}
     for name, picture in pictures.items():
-        found.append(McapAttachment(f"{name}.png", _PNG, _png(picture.pixels)))
-        found.append(McapAttachment(f"{name}{_STROKES}.png", _PNG, _png(picture.labels)))
-    return found
+        files.append(McapAttachment(f"{name}.png", _PNG, _png(picture.pixels)))
+        files.append(McapAttachment(f"{name}{_STROKES}.png", _PNG, _png(picture.labels)))
+    return files
 
 
 def metadata_of(attachments: Iterable[McapAttachment], where: str) -> RecordingMetadata:
     """Decodes the attached files; the last of one name wins, unknown files are ignored. Raises InputError or
     ConfigError."""
-    files = {one.name: one.data for one in attachments}
+    files = {attachment.name: attachment.data for attachment in attachments}
     pictures = {
         name.removesuffix(".png"): _labelled(data, files, name, where)
         for name, data in sorted(files.items())[: 2 * _MOST_PICTURES]
@@ -76,7 +76,7 @@ def metadata_of(attachments: Iterable[McapAttachment], where: str) -> RecordingM
     return RecordingMetadata(
         _rig(files[RIG], where) if RIG in files else None,
         _stature_m(files[WEARER], where) if WEARER in files else None,
-        tuple(one for name, one in pictures.items() if name.startswith(_MODEL)),
+        tuple(attachment for name, attachment in pictures.items() if name.startswith(_MODEL)),
         {name.removeprefix(_WHITE): p for name, p in pictures.items() if name.startswith(_WHITE)},
     )
 

@@ -180,7 +180,7 @@ class RemoteSource:
                 self._address.endpoint,
                 "start `mocapd camera-node`, which says what its cameras are called",
             )
-        if len({one.run for one in states}) > 1:  # their pictures and clocks would come mixed
+        if len({state.run for state in states}) > 1:  # their pictures and clocks would come mixed
             raise UnavailableError(
                 f"{len(states)} camera nodes are called {node!r}, and each has a camera {camera!r}",
                 self._address.endpoint,

@@ -78,7 +78,7 @@ class FilmOrigin:
         """See Origin. A camera's id is its name in the scenario, which has the rig."""
         name = request.name or split_address(address)[1]
         camera = self._camera(name)
-        (size_px,) = (one.size_px for one in self.rig.cameras if one.name == name)
+        (size_px,) = (spec.size_px for spec in self.rig.cameras if spec.name == name)
         check_size(self.rig_source, name, size_px, request.size_px)
         return camera
 

@@ -41,21 +41,21 @@ class SocketCamera:
     def open(self) -> None:
         """Raises UnavailableError (absent, busy, one of several alike), InputError or ConfigError."""
         self.close()
-        found = self._sockets.find(self.name)
-        self._sockets.take(found.plugged, self)
+        socket = self._sockets.find(self.name)
+        self._sockets.take(socket.plugged, self)
         self._closed.clear()
-        self._found, self._still = found, None
-        self._camera = self._shown(found.plugged.webcam)
+        self._found, self._still = socket, None
+        self._camera = self._shown(socket.plugged.webcam)
         self._camera.open()
 
     def read(self) -> Frame:
         """The next whole picture. Raises CameraLost."""
-        camera, found = self._camera, self._found
-        if camera is None or found is None:
+        camera, socket = self._camera, self._found
+        if camera is None or socket is None:
             raise CameraLost("is closed", fix="it is opened again by itself")
         while True:
             frame = camera.read()
-            picture = self._delivered(frame, self._fault(found))
+            picture = self._delivered(frame, self._fault(socket))
             if picture is not None:
                 return replace(picture, camera=self.name)
             self.torn += 1
@@ -63,20 +63,20 @@ class SocketCamera:
     def close(self) -> None:
         """Let go."""
         self._closed.set()
-        found, camera = self._found, self._camera
+        socket, camera = self._found, self._camera
         self._found = self._camera = None
         if camera is not None:
             camera.close()
-        if found is not None:
-            self._sockets.give_back(found.plugged, self)
+        if socket is not None:
+            self._sockets.give_back(socket.plugged, self)
 
     def plugging(self) -> str:
         """See Pluggable."""
         try:
-            found = self._sockets.find(self.name)
+            socket = self._sockets.find(self.name)
         except (UnavailableError, InputError, ConfigError):
             return ""
-        return f"{found.port} {found.plugged.webcam} {found.plugged.plugging}"
+        return f"{socket.port} {socket.plugged.webcam} {socket.plugged.plugging}"
 
     @property
     def identity(self) -> WebcamIdentity:
@@ -86,20 +86,22 @@ class SocketCamera:
     @property
     def place(self) -> str:
         """See Pluggable."""
-        found = self._found
+        socket = self._found
         return (
-            f"in another USB port than configured ({found.port})" if found and found.moved else ""
+            f"in another USB port than configured ({socket.port})"
+            if socket and socket.moved
+            else ""
         )
 
-    def _fault(self, found: FoundSocket) -> Fault:
+    def _fault(self, socket: FoundSocket) -> Fault:
         """What ails it now. Raises CameraLost when it was pulled out, or says nothing; may not come back."""
-        now = self._sockets.now().sockets.get(found.port)
+        now = self._sockets.now().sockets.get(socket.port)
         while now is not None and now.fault is Fault.STUCK:
             threading.Event().wait(_STUCK_S)
-            now = self._sockets.now().sockets.get(found.port)
+            now = self._sockets.now().sockets.get(socket.port)
         if now is None or (now.webcam, now.plugging) != (
-            found.plugged.webcam,
-            found.plugged.plugging,
+            socket.plugged.webcam,
+            socket.plugged.plugging,
         ):
             raise CameraLost("was unplugged", fix="plug it in again")
         if now.fault is Fault.STALLED and not self._closed.wait(_STALL_S):

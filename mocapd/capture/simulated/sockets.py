@@ -78,10 +78,10 @@ class Sockets:
         with self._lock:
             if self._cached is None or self._cached[0] != version:
                 try:
-                    found = decode_json(read_file(self.path, _MOST_BYTES), SocketsFile)
+                    file = decode_json(read_file(self.path, _MOST_BYTES), SocketsFile)
                 except MalformedError as error:
                     raise InputError(f"no sockets: {error.what}", str(self.path), _FIX) from None
-                self._cached = version, found
+                self._cached = version, file
             return self._cached[1]
 
     def identity(self, webcam: str) -> WebcamIdentity:

@@ -70,13 +70,13 @@ def set_free(device: ControlDevice, held: Held) -> None:
     """Switch the automatics on, but for the one that would lower the rate. Raises UnavailableError."""
     if Control.DYNAMIC_FRAMERATE in held:
         device.write(Control.DYNAMIC_FRAMERATE, 0)
-    for one in _AUTOMATICS:
+    for automatic in _AUTOMATICS:
         # without both controls the automatic's value could not be restored
-        if one.switch not in held or one.value not in held:
+        if automatic.switch not in held or automatic.value not in held:
             continue
-        now = device.write(one.switch, one.on)
-        if now == one.off and one.switch is Control.AUTO_EXPOSURE:
-            device.write(one.switch, _AUTO_EVERYTHING)  # the few that steer an iris too
+        now = device.write(automatic.switch, automatic.on)
+        if now == automatic.off and automatic.switch is Control.AUTO_EXPOSURE:
+            device.write(automatic.switch, _AUTO_EVERYTHING)  # the few that steer an iris too
 
 
 def lock(device: ControlDevice, held: Held, fps_hz: float, mains_hz: int | None = None) -> Controls:
@@ -86,16 +86,20 @@ def lock(device: ControlDevice, held: Held, fps_hz: float, mains_hz: int | None 
     lamps flicker: the exposure becomes a multiple of their period, 1/100 or 1/120 s.
     Returns what the camera holds now, as it is asked for at each opening. Raises UnavailableError.
     """
-    found = {one.value: device.read(one.value) for one in _AUTOMATICS if one.value in held}
+    settled = {
+        automatic.value: device.read(automatic.value)
+        for automatic in _AUTOMATICS
+        if automatic.value in held
+    }
     gain = device.read(Control.GAIN) if Control.GAIN in held else None
-    for one in _AUTOMATICS:
-        if one.switch in held:
-            device.write(one.switch, one.off)
-        value = found.get(one.value)
+    for automatic in _AUTOMATICS:
+        if automatic.switch in held:
+            device.write(automatic.switch, automatic.off)
+        value = settled.get(automatic.value)
         if value is not None:
-            if one.value is Control.EXPOSURE:
+            if automatic.value is Control.EXPOSURE:
                 value = exposure_units(value, fps_hz, mains_hz)
-            device.write(one.value, value)
+            device.write(automatic.value, value)
     if gain is not None:
         device.write(Control.GAIN, gain)
     if mains_hz is not None and Control.POWER_LINE in held:
@@ -157,13 +161,13 @@ def as_held(controls: Controls) -> Held:
 
 def restore(device: ControlDevice, before: Held) -> None:
     """Give back what was held before. Raises UnavailableError."""
-    for one in _AUTOMATICS:
-        was = before.get(one.switch)
-        if was in (None, one.off) and one.value in before:
-            device.write(one.switch, one.off)
-            device.write(one.value, before[one.value])
+    for automatic in _AUTOMATICS:
+        was = before.get(automatic.switch)
+        if was in (None, automatic.off) and automatic.value in before:
+            device.write(automatic.switch, automatic.off)
+            device.write(automatic.value, before[automatic.value])
         if was is not None:
-            device.write(one.switch, was)
+            device.write(automatic.switch, was)
     for control in (Control.GAIN, Control.DYNAMIC_FRAMERATE, Control.POWER_LINE):
         if control in before:
             device.write(control, before[control])

@@ -106,7 +106,7 @@ def holders(node: Path, proc: Path = PROC) -> tuple[tuple[int, str], ...]:
 
     This process is left out: it has the node open to ask.
     """
-    found: list[tuple[int, str]] = []
+    users: list[tuple[int, str]] = []
     for process in proc.glob("[0-9]*"):
         try:
             held = any(link.readlink() == node for link in (process / "fd").iterdir())
@@ -114,12 +114,12 @@ def holders(node: Path, proc: Path = PROC) -> tuple[tuple[int, str], ...]:
         except OSError:  # another user's, or ended while we looked
             continue
         if held and int(process.name) != os.getpid():
-            found.append((int(process.name), command))
-    return tuple(sorted(found))
+            users.append((int(process.name), command))
+    return tuple(sorted(users))
 
 
 def _holders_text(node: Path) -> str:
-    found = holders(node)
-    if not found:
+    users = holders(node)
+    if not users:
         return "used by a process of another user, or already by this one"
-    return "used by " + ", ".join(f"pid {pid} ({command})" for pid, command in found)
+    return "used by " + ", ".join(f"pid {pid} ({command})" for pid, command in users)

@@ -62,13 +62,13 @@ def crowded_buses(
     by_bus: dict[str, list[str]] = {}
     for name, (port_path, _mode) in cameras.items():
         by_bus.setdefault(port_path.partition("-")[0], []).append(name)
-    found = []
+    crowded = []
     for bus, names in by_bus.items():
         asked = sum(cameras[name][1].bytes_per_s for name in names)
         usable = min(usable_bytes_per_s(cameras[name][0], sysfs) for name in names)
         if asked > usable:
-            found.append(CrowdedBus(bus, tuple(names), asked, usable))
-    return tuple(found)
+            crowded.append(CrowdedBus(bus, tuple(names), asked, usable))
+    return tuple(crowded)
 
 
 def lower_mode(
@@ -79,12 +79,12 @@ def lower_mode(
     MJPG where there is any, as the camera will be opened with it. The best has the most of
     sqrt(pixels) times rate; of equals, the faster. Under 320x240 or 10 Hz nothing is tracked.
     """
-    fourcc = "MJPG" if any(one.fourcc == "MJPG" for one in formats) else "YUYV"
+    fourcc = "MJPG" if any(format_.fourcc == "MJPG" for format_ in formats) else "YUYV"
     fitting = [
         mode
-        for one in formats
-        if one.fourcc == fourcc and one.size_px[0] >= 320 and one.size_px[1] >= 240
-        for mode in (Mode(fourcc, one.size_px, rate_hz) for rate_hz in one.rates_hz)
+        for format_ in formats
+        if format_.fourcc == fourcc and format_.size_px[0] >= 320 and format_.size_px[1] >= 240
+        for mode in (Mode(fourcc, format_.size_px, rate_hz) for rate_hz in format_.rates_hz)
         if mode.bytes_per_s <= budget_bytes_per_s
         and 10.0 <= mode.fps_hz <= asked.fps_hz + 0.5
         and mode.size_px[0] <= asked.size_px[0]

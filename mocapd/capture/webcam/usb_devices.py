@@ -32,8 +32,8 @@ def usb_webcams() -> tuple[UsbWebcam, ...]:
         devices = list(usb.core.find(find_all=True, backend=backend))
     except usb.core.USBError:  # no bus is mounted here, as in a container
         return ()
-    found = (_webcam(device) for device in devices if _is_webcam(device))
-    return tuple(sorted(found, key=lambda one: one.identity.port_path))
+    webcams = (_webcam(device) for device in devices if _is_webcam(device))
+    return tuple(sorted(webcams, key=lambda webcam: webcam.identity.port_path))
 
 
 def _is_webcam(device: usb.core.Device) -> bool:

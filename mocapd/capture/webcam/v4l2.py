@@ -226,9 +226,15 @@ class V4l2Source:
             _LOG.warning(
                 "%s: asked for %g Hz, was given %g Hz", self.name, self._settings.fps_hz, got.fps_hz
             )
-        for one in got.controls:
-            if not one.applied:
-                _LOG.warning("%s: %s is %g, asked for %g", self.name, one.name, one.got, one.asked)
+        for control in got.controls:
+            if not control.applied:
+                _LOG.warning(
+                    "%s: %s is %g, asked for %g",
+                    self.name,
+                    control.name,
+                    control.got,
+                    control.asked,
+                )
 
 
 def _other_mode(one: WebcamSettings, other: WebcamSettings) -> bool:

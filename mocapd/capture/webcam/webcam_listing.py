@@ -61,7 +61,7 @@ def list_cameras(
     nodes = video_nodes(sysfs, dev)
     taken = {node.identity.port_path for node in nodes if node.identity}
     rows = [_node_info(node) for node in nodes]
-    rows += [_without_node(one) for one in usb() if one.identity.port_path not in taken]
+    rows += [_without_node(webcam) for webcam in usb() if webcam.identity.port_path not in taken]
     return tuple(_with_twin_note(row, rows) for row in rows)
 
 
@@ -73,9 +73,11 @@ def _node_info(node: VideoNode) -> CameraInfo:
     try:
         with opened_node(node.node) as fd:
             captures = _captures(fd, captures)
-            formats = tuple(sorted(enumerate_formats(fd), key=lambda one: one.fourcc != "MJPG"))
+            formats = tuple(
+                sorted(enumerate_formats(fd), key=lambda format_: format_.fourcc != "MJPG")
+            )
             check_usable(node.node, fd)
-        fourccs = {one.fourcc for one in formats}
+        fourccs = {format_.fourcc for format_ in formats}
         if "MJPG" not in fourccs and "YUYV" in fourccs:
             note = "YUYV only, no MJPG: it fills a USB 2 bus; expect low rates and one such camera"
         elif "MJPG" not in fourccs:
@@ -111,7 +113,7 @@ def _without_node(webcam: UsbWebcam) -> CameraInfo:
 
 def _with_twin_note(row: CameraInfo, rows: list[CameraInfo]) -> CameraInfo:
     """Adds a note to twins: only their sockets distinguish webcams of one vid:pid:serial."""
-    ports = {one.port_path for one in rows if row.identity and one.usb_id == row.usb_id}
+    ports = {other.port_path for other in rows if row.identity and other.usb_id == row.usb_id}
     if len(ports) < 2 or row.note or row.problem:
         return row
     return replace(row, note="has a twin with the same vid:pid:serial: keep each in its USB port")
