@@ -57,7 +57,7 @@ class JointPose:
 class Body:
     """A person at one instant: `body["leftHand"]` is a JointPose, by VRM 1.0 bone name.
 
-    `frame` is the message as it was sent. While `tracked` is false there are no joints.
+    `frame` is the received message. While `tracked` is false there are no joints.
     """
 
     frame: wire.SkeletonFrame
@@ -84,12 +84,12 @@ class Body:
 
     @property
     def latency_s(self) -> float:
-        """From the middle of the exposure until the daemon published [s]."""
+        """Time from the middle of the exposure to the daemon's publication [s]."""
         return (self.frame.publish_monotonic_ns - self.frame.capture_monotonic_ns) * 1e-9
 
     @property
     def age_s(self) -> float:
-        """From the middle of the exposure until now [s]; on two machines as good as their clocks."""
+        """Time since the middle of the exposure [s]; across machines as accurate as their clocks."""
         return (time.time_ns() - self.frame.capture_unix_ns) * 1e-9
 
     def __getitem__(self, name: str) -> JointPose:

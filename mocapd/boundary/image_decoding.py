@@ -71,10 +71,10 @@ def decode_picture(
     most_pixels: int = MOST_PIXELS,
     most_bits: int = 8,
 ) -> Bytes:
-    """A PNG or JPEG as cv2.imdecode with these flags has it: (h,w,3) BGR or (h,w), uint8.
+    """Decodes a PNG or JPEG as cv2.imdecode with these flags: (h,w,3) BGR or (h,w), uint8.
 
-    `size_px` (width, height) is what it must have; without it, `most_pixels` is the limit. Of more than
-    8 bits a channel, where `most_bits` lets it in, the upper 8 are given. Raises MalformedError: no such
+    `size_px`: required (width, height); without it, `most_pixels` is the limit. With more than 8 bits a
+    channel, if `most_bits` permits them, the result has the upper 8. Raises MalformedError: no such
     picture, cut short, another size, more bits, more work than a picture of its size needs.
     """
     array = np.frombuffer(data, dtype=np.uint8)

@@ -45,7 +45,7 @@ class JpegHeader:
 
 
 def is_jpeg(data: memoryview) -> bool:
-    """By its first bytes."""
+    """True if the data begins as a JPEG does."""
     return data[: len(_SOI)] == _SOI
 
 

@@ -45,7 +45,7 @@ class PngHeader:
 
 
 def is_png(data: memoryview) -> bool:
-    """By its first bytes."""
+    """True if the data has the signature of a PNG."""
     return data[: len(_PNG)] == _PNG
 
 
@@ -154,7 +154,7 @@ def _check_pixels(pixels: list[memoryview], raw_bytes: int) -> None:
                 size += len(inflater.decompress(rest, _STEP_BYTES))
                 rest = inflater.unconsumed_tail
         if size <= raw_bytes:
-            size += len(inflater.flush())  # what is left of the last copy: its input is consumed
+            size += len(inflater.flush())  # the rest of the output, as the input is consumed
     except zlib.error:
         raise MalformedError("is damaged") from None
     if size != raw_bytes or not inflater.eof:

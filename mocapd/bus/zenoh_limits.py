@@ -34,7 +34,7 @@ CLOSE_S = 0.7
 
 
 def unicast_limits() -> dict[str, Any]:
-    """What goes into Zenoh's configuration below `transport/unicast`."""
+    """The part `transport/unicast` of Zenoh's configuration."""
     return {
         "max_sessions": MAX_SESSIONS,
         "accept_pending": ACCEPT_PENDING,
@@ -43,5 +43,5 @@ def unicast_limits() -> dict[str, Any]:
 
 
 def receive_limits() -> dict[str, Any]:
-    """What goes into Zenoh's configuration below `transport/link/rx`."""
+    """The part `transport/link/rx` of Zenoh's configuration."""
     return {"max_message_size": MAX_MESSAGE_BYTES}

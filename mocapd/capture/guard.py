@@ -26,7 +26,7 @@ class GuardedCapture:
         return self._closing
 
     def close(self) -> None:
-        """Release now, or as soon as the reader is out. Never blocks; may be called twice."""
+        """Releases the capture now, or when the reader leaves. Never blocks; idempotent."""
         self._closing = True
         self._release_if_free()
 
@@ -75,7 +75,7 @@ class Openings:
         return False
 
     def close(self) -> None:
-        """Never blocks; may be called twice."""
+        """Closes the current capture. Never blocks; idempotent."""
         with self._lock:
             self._begun += 1
             current, self._current = self._current, None

@@ -9,11 +9,11 @@ from mocapd.capture.base import Source
 from mocapd.capture.source_request import SourceRequest
 from mocapd.types import FrameSet, LabelledPicture, Rig
 
-Progress = Callable[[str, int, int], None]  # what is being made, parts done, parts in all
+Progress = Callable[[str, int, int], None]  # task, parts done, parts in all
 
 
 class Origin(Protocol):
-    """An origin that is open. `rig_source`: where its rig is from, for people; `count`: its frame sets."""
+    """An open origin. `rig_source`: file or scenario of its rig, for users; `count`: number of frame sets."""
 
     @property
     def rig(self) -> Rig: ...

@@ -134,5 +134,5 @@ class UrlSource:
         raise CameraLost("the network camera stopped sending", self._shown, "check its network")
 
     def close(self) -> None:
-        """Let go; a blocked `read` ends after its timeout at the latest."""
+        """Closes the stream; a blocked `read` ends after its timeout at the latest."""
         self._openings.close()

@@ -40,7 +40,7 @@ def undecodable_codec(capture: cv2.VideoCapture) -> str:
 
 
 def conversion(path: Path) -> str:
-    """How to make a video that can be read of one that cannot, with the times of its frames."""
+    """Advice for converting an unsupported video, with the times of its frames."""
     made = shlex.quote(f"{path.stem}-h264.mp4")
     return (
         "convert it to H.264 and put that in its place: "

@@ -3,12 +3,7 @@
 import os
 import sys
 
-from mocapd.app.daemon.early_signals import (
-    SIGINT_EXIT,
-    end_at_once,
-    ignore_late_signals,
-    interruptible,
-)
+from mocapd.app.daemon.early_signals import SIGINT_EXIT, end_at_once, ignore_signals, interruptible
 
 # Read by the libraries while they are imported. A pool of threads costs more than it brings at the
 # sizes met here: one thread per camera, and the libraries at one each.
@@ -36,7 +31,7 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.exit(SIGINT_EXIT)
     finally:
-        ignore_late_signals()
+        ignore_signals()
 
 
 if __name__ == "__main__":

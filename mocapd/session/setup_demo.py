@@ -41,7 +41,7 @@ class Demo:
 
     @property
     def fps_hz(self) -> float:
-        """Of all cameras."""
+        """The rate of all cameras."""
         return self.stage.scenario.fps_hz
 
 

@@ -49,7 +49,7 @@ def interruptible(words: Sequence[str]) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def ignore_late_signals() -> None:
+def ignore_signals() -> None:
     """Ignores signals after the end of the command, so that they do not change the exit code.
 
     The interpreter restores their default effect while it exits, which would kill the process.

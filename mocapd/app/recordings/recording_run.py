@@ -120,7 +120,7 @@ class Recorder:
 
 
 def duration(seconds: float) -> str:
-    """As 0:12:34."""
+    """A duration as H:MM:SS."""
     whole = int(seconds)
     return f"{whole // 3600}:{whole // 60 % 60:02}:{whole % 60:02}"
 

@@ -144,7 +144,7 @@ class Replay:
 
 
 def _step_ns(before: SkeletonFrame | None, frame: SkeletonFrame) -> int:
-    """From one frame's publication to the next one's."""
+    """Interval between the publications of two frames [ns]; 0 for a long pause or a step back."""
     if before is None:
         return 0
     step_ns = frame.publish_monotonic_ns - before.publish_monotonic_ns

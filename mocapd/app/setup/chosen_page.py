@@ -15,7 +15,7 @@ def target_page(config: "Config") -> "Running":
     from mocapd.control.target_process import select_targets
     from mocapd.web.runtime_file import running
 
-    # a setup by itself has no name
+    # a setup without a daemon has no name
     pages = [page for page in running(runtime_folder(config.state_dir)) if page.instance]
     chosen = select_targets(pages, config)
     if not chosen:

@@ -1,4 +1,4 @@
-"""A recording with pictures as the origin of its cameras: rig, wearer and colours are inside of it."""
+"""A recording with pictures as the origin of its cameras; it contains rig, wearer and colours."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ _RECORD = "record with `mocapd record --pictures`, from a daemon whose cameras a
 
 @dataclass(frozen=True, slots=True, eq=False)
 class McapOrigin:
-    """See Origin. `start_ns`: the time of the first picture, Unix time; counts: of each camera its pictures."""
+    """See Origin. `start_ns`: Unix time of the first picture; counts: number of pictures by camera."""
 
     path: Path
     metadata: RecordingMetadata

@@ -1,4 +1,4 @@
-"""A camera's picture in a recording: the JPEG that the camera delivered, as Foxglove's `CompressedImage`.
+"""A camera's picture in a recording: its JPEG in a Foxglove `CompressedImage`.
 
 Fields and types are those of foxglove/foxglove-sdk, schemas/jsonschema/CompressedImage.json; bytes are base64.
 """
@@ -63,5 +63,5 @@ def camera_frame(camera: str) -> str:
 
 
 def decode_picture_message(data: bytes) -> CompressedImage:
-    """A message of such a topic. Raises MalformedError."""
+    """Decodes a message of a picture topic. Raises MalformedError."""
     return decode_json(data, CompressedImage)

@@ -69,7 +69,7 @@ def metadata_of(attachments: Iterable[McapAttachment], where: str) -> RecordingM
     ConfigError."""
     files = {attachment.name: attachment.data for attachment in attachments}
     pictures = {
-        name.removesuffix(".png"): _labelled(data, files, name, where)
+        name.removesuffix(".png"): _labelled_picture(data, files, name, where)
         for name, data in sorted(files.items())[: 2 * _MOST_PICTURES]
         if name.startswith((_WHITE, _MODEL)) and name.endswith(".png") and _STROKES not in name
     }
@@ -85,7 +85,7 @@ def _rig(data: bytes, where: str) -> Rig:
     try:
         entries = decode_json(data, _RigFile).cameras
     except MalformedError as error:
-        raise _damaged(RIG, error, where) from None
+        raise _damaged_error(RIG, error, where) from None
     rig = Rig(tuple(camera_from_dict(entry, f"{where}, {RIG}") for entry in entries))
     if not rig.cameras or len(set(rig.names)) != len(rig.names):
         raise ConfigError("has no cameras, or two of one name", f"{where}, {RIG}", "record again")
@@ -97,10 +97,12 @@ def _stature_m(data: bytes, where: str) -> float:
     try:
         return finite_number(decode_json(data, _WearerFile).stature_m, *STATURES_M)
     except MalformedError as error:
-        raise _damaged(WEARER, error, where) from None
+        raise _damaged_error(WEARER, error, where) from None
 
 
-def _labelled(data: bytes, files: Mapping[str, bytes], name: str, where: str) -> LabelledPicture:
+def _labelled_picture(
+    data: bytes, files: Mapping[str, bytes], name: str, where: str
+) -> LabelledPicture:
     strokes = f"{name.removesuffix('.png')}{_STROKES}.png"
     try:
         pixels = decode_picture(data, cv2.IMREAD_COLOR, most_pixels=MOST_DRAWN_PIXELS)
@@ -109,11 +111,11 @@ def _labelled(data: bytes, files: Mapping[str, bytes], name: str, where: str) ->
         if labels.max() > _COLOURS:
             raise MalformedError(f"contains the id {labels.max()}")
     except MalformedError as error:
-        raise _damaged(name, error, where) from None
+        raise _damaged_error(name, error, where) from None
     return LabelledPicture(pixels, labels)
 
 
-def _damaged(name: str, error: MalformedError, where: str) -> InputError:
+def _damaged_error(name: str, error: MalformedError, where: str) -> InputError:
     return InputError(f"{name} in it: {error.what}", where, "record again")
 
 

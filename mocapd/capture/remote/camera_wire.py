@@ -130,16 +130,16 @@ class Done(msgspec.Struct, frozen=True):
 
 
 def encode(message: msgspec.Struct) -> bytes:
-    """As it is sent."""
+    """Encodes a message."""
     return msgspec.msgpack.encode(message)
 
 
 def decode(data: bytes, kind: type[M]) -> M:
-    """A message of this kind. Raises MalformedError, also for one of another version."""
+    """Decodes a message of this type. Raises MalformedError, also for another version."""
     if len(data) > MOST_MESSAGE_BYTES:
         raise MalformedError(f"a message of {len(data)} bytes")
     message = decode_msgpack(data, kind)
-    said = getattr(message, "schema", None)
-    if said != SCHEMA:
-        raise MalformedError(f"of the schema {said!r}, this program reads {SCHEMA!r}")
+    schema = getattr(message, "schema", None)
+    if schema != SCHEMA:
+        raise MalformedError(f"of the schema {schema!r}, this program reads {SCHEMA!r}")
     return message

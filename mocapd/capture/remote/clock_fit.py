@@ -45,18 +45,18 @@ class ClockLine:
     asymmetry_ns: float
 
     def local_from_remote(self, remote_ns: int) -> int:
-        """A time of the other clock by ours [ns]."""
+        """Converts a time of the remote clock to ours [ns]."""
         # subtract the offset first: the drift then acts on a small difference, without loss of digits
         near_ns = remote_ns - self.offset_ns
         return near_ns - round(self.drift / (1.0 + self.drift) * (near_ns - self.reference_ns))
 
     def remote_from_local(self, local_ns: int) -> int:
-        """A time of our clock by the other [ns]."""
+        """Converts a time of our clock to the remote one [ns]."""
         return local_ns + self.offset_ns + round(self.drift * (local_ns - self.reference_ns))
 
 
 def clock_sample(asked_ns: int, taken_ns: int, answered_ns: int, came_ns: int) -> ClockSample:
-    """From the four times: asked and come by our clock, taken and answered by the other."""
+    """The sample of one exchange: asked_ns and came_ns by our clock, taken_ns and answered_ns by the remote one."""
     return ClockSample(
         local_ns=(asked_ns + came_ns) // 2,
         offset_ns=((taken_ns - asked_ns) + (answered_ns - came_ns)) // 2,

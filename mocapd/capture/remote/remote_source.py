@@ -90,7 +90,7 @@ class RemoteSource:
             link.close()
             raise UnavailableError("was closed while it was opened", self.name, "open it again")
         try:
-            state = self._looked_up(link)
+            state = self._query_state(link)
             self._learn_clock(link)
             link.listen(self._limit)
         except BaseException:
@@ -135,7 +135,7 @@ class RemoteSource:
         return f"{trouble} -- {_TIME_SERVICE}" if trouble else ""
 
     def close(self) -> None:
-        """Let go and wake a blocked `read`."""
+        """Closes the connection and wakes a blocked `read`."""
         with self._lock:
             self._turn += 1
             link, self._link = self._link, None
@@ -171,7 +171,7 @@ class RemoteSource:
 
     # -- opening ---------------------------------------------------------------------------------
 
-    def _looked_up(self, link: RemoteLink) -> CameraState:
+    def _query_state(self, link: RemoteLink) -> CameraState:
         node, camera = self._address.node, self._address.camera
         states = link.ask_all(camera_wire.state(node, camera), CameraState, None, _ANSWER_S)
         if not states:
@@ -180,7 +180,7 @@ class RemoteSource:
                 self._address.endpoint,
                 "start `mocapd camera-node`, which says what its cameras are called",
             )
-        if len({state.run for state in states}) > 1:  # their pictures and clocks would come mixed
+        if len({state.run for state in states}) > 1:  # else their pictures and clocks would mix
             raise UnavailableError(
                 f"{len(states)} camera nodes are called {node!r}, and each has a camera {camera!r}",
                 self._address.endpoint,

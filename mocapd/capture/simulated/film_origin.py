@@ -1,4 +1,4 @@
-"""A scenario's film as the origin of simulated webcams: what they show, and what their rig tells a tracker."""
+"""A scenario's film as the origin of simulated webcams: their pictures, rig and calibration."""
 
 import logging
 import threading

@@ -44,7 +44,7 @@ def _split(address: str) -> tuple[str, str]:
 
 
 def scenario_address(name: str) -> str:
-    """What a scenario of calib/scenarios is called as an origin."""
+    """The origin's name of a scenario in calib/scenarios."""
     return f"{_PREFIX}{name}"
 
 

@@ -1,4 +1,4 @@
-"""A simulated webcam that is plugged in and out, and that has a webcam's faults; see `sockets`."""
+"""A simulated webcam with plugging and faults; see `sockets`."""
 
 import threading
 from collections.abc import Callable
@@ -21,9 +21,9 @@ _STUCK_S = 0.05
 
 
 class SocketCamera:
-    """A webcam by its identity: it shows what the webcam sees that it was found as, be it the right one or not.
+    """A webcam found by identity; it shows the view of the webcam in that socket, even of a wrong one.
 
-    As a real one it is lost with the next picture when it is pulled out, and it is not opened twice.
+    As a real webcam, it is lost at the next picture after unplugging, and cannot be opened twice.
     """
 
     recorded = False
@@ -55,13 +55,13 @@ class SocketCamera:
             raise CameraLost("is closed", fix="it is opened again by itself")
         while True:
             frame = camera.read()
-            picture = self._delivered(frame, self._fault(socket))
+            picture = self._apply_fault(frame, self._fault(socket))
             if picture is not None:
                 return replace(picture, camera=self.name)
             self.torn += 1
 
     def close(self) -> None:
-        """Let go."""
+        """Closes the webcam."""
         self._closed.set()
         socket, camera = self._found, self._camera
         self._found = self._camera = None
@@ -94,7 +94,7 @@ class SocketCamera:
         )
 
     def _fault(self, socket: FoundSocket) -> Fault:
-        """What ails it now. Raises CameraLost when it was pulled out, or says nothing; may not come back."""
+        """The current fault. Raises CameraLost when unplugged or stalled; blocks during the fault STUCK."""
         now = self._sockets.now().sockets.get(socket.port)
         while now is not None and now.fault is Fault.STUCK:
             threading.Event().wait(_STUCK_S)
@@ -108,8 +108,8 @@ class SocketCamera:
             raise CameraLost(f"sent nothing for {_STALL_S:.1f} s", fix="unplug and replug it")
         return now.fault
 
-    def _delivered(self, frame: Frame, fault: Fault) -> Frame | None:
-        """The picture as it comes with this fault; None when it is damaged."""
+    def _apply_fault(self, frame: Frame, fault: Fault) -> Frame | None:
+        """The picture with this fault applied; None when it is damaged."""
         if fault is Fault.FROZEN:
             self._still = still = self._still or frame
             return replace(still, seq=frame.seq, t_ns=frame.t_ns)

@@ -36,7 +36,7 @@ class Fault(StrEnum):
 
 
 class Plugged(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What is in a socket."""
+    """The content of a socket."""
 
     webcam: str
     plugging: int = 0
@@ -52,7 +52,7 @@ class SocketsFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, slots=True)
 class FoundSocket:
-    """Where a webcam was found: its port path, what is in it, and whether it is another one than configured."""
+    """The location of a webcam: port path, content of the socket; moved: not the configured port."""
 
     port: str
     plugged: Plugged

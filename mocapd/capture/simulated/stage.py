@@ -43,7 +43,7 @@ class Stage:
             return self._start
 
     def jpeg(self, camera: str, n: int) -> bytes:
-        """What the camera sees in frame n, one of the last or the next to be exposed."""
+        """The camera's picture of frame n, a recent frame or the next one."""
         with self._lock:
             scene, start = self._scene, self._start
             if n < start:

@@ -54,7 +54,7 @@ def power_line_code(mains_hz: int) -> int:
 
 
 class ControlDevice(Protocol):
-    """Where controls are read and set. Every method raises UnavailableError when the camera is gone."""
+    """Access to a camera's controls. Every method raises UnavailableError when the camera is absent."""
 
     def range(self, control: Control) -> ControlRange | None:
         """The control's range; None when the camera lacks it."""

@@ -14,7 +14,7 @@ from mocapd.capture.webcam.v4l2 import WebcamSettings
 
 MANUAL_EXPOSURE, AUTO_EXPOSURE, _AUTO_EVERYTHING = 1, 3, 0
 UNITS_PER_S = 10_000
-"""Of the control EXPOSURE, which counts 100 us."""
+"""Units of the control EXPOSURE, 100 us each."""
 
 
 @runtime_checkable
@@ -86,11 +86,7 @@ def lock(device: ControlDevice, held: Held, fps_hz: float, mains_hz: int | None 
     lamps flicker: the exposure becomes a multiple of their period, 1/100 or 1/120 s.
     Returns what the camera holds now, as it is asked for at each opening. Raises UnavailableError.
     """
-    settled = {
-        automatic.value: device.read(automatic.value)
-        for automatic in _AUTOMATICS
-        if automatic.value in held
-    }
+    settled = {a.value: device.read(a.value) for a in _AUTOMATICS if a.value in held}
     gain = device.read(Control.GAIN) if Control.GAIN in held else None
     for automatic in _AUTOMATICS:
         if automatic.switch in held:
@@ -124,7 +120,7 @@ def exposure_units(wanted: int, fps_hz: float, mains_hz: int | None) -> int:
 
 
 def as_controls(device: ControlDevice, held: Held, mains_hz: int | None = None) -> Controls:
-    """What the camera holds now, for its next opening: only controls that it has."""
+    """The current values of the camera's controls, for its next opening."""
 
     def value(control: Control) -> int | None:
         return device.read(control) if control in held else None
@@ -146,7 +142,7 @@ def as_controls(device: ControlDevice, held: Held, mains_hz: int | None = None) 
 
 
 def as_held(controls: Controls) -> Held:
-    """The values that a lock had found, for `restore`, which switches their automatics off."""
+    """The values of a lock, for `restore`, which switches their automatics off."""
     rate, mains_hz = controls.dynamic_framerate, controls.power_line_hz
     values = {
         Control.EXPOSURE: controls.exposure,
@@ -160,7 +156,7 @@ def as_held(controls: Controls) -> Held:
 
 
 def restore(device: ControlDevice, before: Held) -> None:
-    """Give back what was held before. Raises UnavailableError."""
+    """Restores earlier values. Raises UnavailableError."""
     for automatic in _AUTOMATICS:
         was = before.get(automatic.switch)
         if was in (None, automatic.off) and automatic.value in before:

@@ -16,7 +16,7 @@ _EXPOSURE_AUTO = 3.0
 
 
 class HasProperties(Protocol):
-    """What is needed of cv2.VideoCapture."""
+    """The required part of cv2.VideoCapture."""
 
     def set(self, property_id: int, value: float) -> bool: ...
     def get(self, property_id: int) -> float: ...
@@ -24,7 +24,7 @@ class HasProperties(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Controls:
-    """What to set; None leaves the camera's own value.
+    """Control values; None leaves the camera's own value.
 
     `exposure` in the camera's unit (UVC: 100 us), `wb_temperature` [K], `gain` and `focus` without
     a unit. A value turns its automatic off, unless the automatic is asked for explicitly.
@@ -60,7 +60,7 @@ class ControlResult:
     got: float
 
     @property
-    def applied(self) -> bool:
+    def is_applied(self) -> bool:
         return self.asked == self.got
 
 
@@ -102,7 +102,7 @@ def control_steps(controls: Controls) -> tuple[tuple[str, int, float], ...]:
 
 
 def apply_controls(capture: HasProperties, controls: Controls) -> tuple[ControlResult, ...]:
-    """Set what is asked, then read everything back."""
+    """Sets all given controls, then reads them back."""
     steps = control_steps(controls)
     for _, number, value in steps:
         capture.set(number, value)

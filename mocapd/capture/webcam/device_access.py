@@ -21,7 +21,7 @@ PROC = Path("/proc")
 
 @contextmanager
 def opened_node(node: Path) -> Iterator[int]:
-    """A file descriptor of the node, for questions only.
+    """A file descriptor of the node, for queries only.
 
     Raises UnavailableError (gone) or PermissionDeniedError (with the line that grants the right).
     """

@@ -20,7 +20,7 @@ _USABLE: Mapping[int, float] = {12: 0.9e6, 480: 36e6, 5000: 320e6}
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """What a webcam is asked to send."""
+    """A requested mode of a webcam."""
 
     fourcc: str
     size_px: tuple[int, int]  # width, height
@@ -28,14 +28,14 @@ class Mode:
 
     @property
     def bytes_per_s(self) -> float:
-        """What it takes of the bus: YUYV has two bytes a pixel, MJPG about a fifth of that."""
+        """Bandwidth on the bus: YUYV has two bytes a pixel, MJPG about a fifth of that."""
         share = _JPEG_SHARE if self.fourcc == "MJPG" else 1.0
         return 2.0 * share * self.size_px[0] * self.size_px[1] * self.fps_hz
 
 
 @dataclass(frozen=True, slots=True)
 class CrowdedBus:
-    """A bus that is asked for more than it has. `cameras`: names, in the order given."""
+    """An overloaded bus. `cameras`: names, in the order given."""
 
     bus: str
     cameras: tuple[str, ...]
@@ -44,7 +44,7 @@ class CrowdedBus:
 
 
 def usable_bytes_per_s(port_path: str, sysfs: Path = SYSFS) -> float:
-    """What webcams can have together of the bus that this port belongs to; USB 2's when unknown."""
+    """The bandwidth for all webcams of this port's bus; that of USB 2 when unknown."""
     try:
         text = (sysfs / "bus/usb/devices" / port_path / "speed").read_text(encoding="ascii")
         speed = float(text)
@@ -58,7 +58,7 @@ def usable_bytes_per_s(port_path: str, sysfs: Path = SYSFS) -> float:
 def crowded_buses(
     cameras: Mapping[str, tuple[str, Mode]], sysfs: Path = SYSFS
 ) -> tuple[CrowdedBus, ...]:
-    """The buses that do not carry what is asked for: by camera name, its port path and its mode."""
+    """The overloaded buses. cameras: port path and mode by camera name."""
     by_bus: dict[str, list[str]] = {}
     for name, (port_path, _mode) in cameras.items():
         by_bus.setdefault(port_path.partition("-")[0], []).append(name)

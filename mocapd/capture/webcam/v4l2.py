@@ -60,7 +60,7 @@ class NegotiatedFormat:
 
 
 class V4l2Source:
-    """One webcam, named by its USB identity or (what is not on USB) by its node.
+    """One webcam, addressed by its USB identity or (off USB) by its node.
 
     `others`: identities of the other configured webcams, which are never taken for this one.
     `torn` counts frames that came damaged and were left out; each is a gap in `seq`.
@@ -182,7 +182,7 @@ class V4l2Source:
         raise CameraLost("was unplugged", where, "plug it in again")
 
     def close(self) -> None:
-        """Let go; a blocked `read` ends after the stall timeout of `environment` at the latest."""
+        """Closes the webcam; a blocked `read` ends after the stall timeout of `environment` at the latest."""
         self._openings.close()
 
     def plugging(self) -> str:
@@ -226,15 +226,9 @@ class V4l2Source:
             _LOG.warning(
                 "%s: asked for %g Hz, was given %g Hz", self.name, self._settings.fps_hz, got.fps_hz
             )
-        for control in got.controls:
-            if not control.applied:
-                _LOG.warning(
-                    "%s: %s is %g, asked for %g",
-                    self.name,
-                    control.name,
-                    control.got,
-                    control.asked,
-                )
+        for c in got.controls:
+            if not c.is_applied:
+                _LOG.warning("%s: %s is %g, asked for %g", self.name, c.name, c.got, c.asked)
 
 
 def _other_mode(one: WebcamSettings, other: WebcamSettings) -> bool:

@@ -62,7 +62,7 @@ class PixelFormat:
 
 @dataclass(frozen=True, slots=True)
 class ControlRange:
-    """What values a control takes: `low` to `high` in steps."""
+    """Permitted values of a control: `low` to `high` in steps."""
 
     low: int
     high: int
@@ -91,7 +91,7 @@ def enumerate_formats(fd: int) -> tuple[PixelFormat, ...]:
 
 
 def is_streaming_elsewhere(fd: int) -> bool:
-    """Whether another process streams from this node.
+    """True if another process streams from this node.
 
     Asks for zero buffers, which changes nothing and is refused (EBUSY) during streaming.
     """

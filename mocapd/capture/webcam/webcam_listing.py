@@ -22,9 +22,8 @@ class CameraInfo:
     """One V4L2 node, or (`node` None) a USB webcam that no driver has taken.
 
     `spec`: what to write into the config, a `usb:` identity where there is one. `formats`: MJPG
-    first. `problem`: empty when it can be used, else what is wrong; `fix`: how to mend it. `note`:
-    something to know of a camera that can be used. `captures`: whether it is a camera's own node; its
-    metadata node is not.
+    first. `problem`: why it is unusable, empty otherwise; `fix`: of the problem. `note`: a remark on a
+    usable camera. `captures`: False for a metadata node.
     """
 
     node: Path | None

@@ -93,7 +93,7 @@ def find_webcam(
     sysfs: Path = SYSFS,
     dev: Path = DEV,
 ) -> tuple[Match, Path]:
-    """Where the wanted webcam is at this moment, and its /dev node. Raises UnavailableError."""
+    """Finds a webcam: its match and its /dev node. Raises UnavailableError."""
     nodes = capture_nodes(sysfs, dev)
     match = match_identity(wanted, tuple(nodes), others)
     node = nodes[match.identity].node
