@@ -33,7 +33,7 @@ from mocapd.cli.options import ConfigOption, SetOption
 from mocapd.errors import ConfigError
 from mocapd.evaluate import report, runs
 from mocapd.evaluate.capture_eval import open_case
-from mocapd.session.tracker_setup import cached, ready_tracker
+from mocapd.session.tracker_setup import cache_resources, ready_tracker
 
 
 class Worn(StrEnum):
@@ -92,7 +92,7 @@ def evaluation(
             folders += made
         given = set(captures or ())
         cases = [open_case(folder, compare=folder in given) for folder in folders]
-        resources = cached(effective.cache_dir, progress)
+        resources = cache_resources(effective.cache_dir, progress)
         setting = runs.EvaluationSettings(
             lambda known: ready_tracker(name, known, resources),
             effective.tracker.stature_m,

@@ -24,7 +24,7 @@ from mocapd.cli.eval import Joints
 from mocapd.cli.options import ConfigOption, SetOption
 from mocapd.evaluate import report, runs
 from mocapd.evaluate.capture_eval import open_case
-from mocapd.session.tracker_setup import cached, ready_tracker
+from mocapd.session.tracker_setup import cache_resources, ready_tracker
 
 
 def failures(
@@ -42,7 +42,7 @@ def failures(
     with ProgressBars() as progress:
         made = recorded_set.recorded(sessions, effective.cache_dir, progress)
         recorded_set.check_suits(name, sessions, made)
-        resources = cached(effective.cache_dir, progress)
+        resources = cache_resources(effective.cache_dir, progress)
         setting = runs.EvaluationSettings(
             lambda known: ready_tracker(name, known, resources),
             effective.tracker.stature_m,

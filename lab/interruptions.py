@@ -22,7 +22,7 @@ from mocapd.app.terminal.progress import ProgressBars
 from mocapd.calibration.from_origin import from_capture
 from mocapd.cli.options import ConfigOption, SetOption
 from mocapd.evaluate.capture_eval import open_case
-from mocapd.session.tracker_setup import cached, ready_tracker
+from mocapd.session.tracker_setup import cache_resources, ready_tracker
 
 
 def interruptions(
@@ -39,7 +39,7 @@ def interruptions(
     with ProgressBars() as progress:
         case = open_case(recorded_set.recorded([session], effective.cache_dir, progress)[0])
         known = from_capture(case.folder).assuming(own.stature_m)
-        resources = cached(effective.cache_dir, progress, own.tracking)
+        resources = cache_resources(effective.cache_dir, progress, own.tracking)
         ready = ready_tracker(own.name, known, resources)
         found = cue_changes.interruptions(case, ready, progress)
     tables = page.figures_table(found), page.changes_table(found), page.errors_table(found)

@@ -65,7 +65,7 @@ def _tracker(stage: str, cache: Path) -> None:
     from mocapd.capture.simulated.film_origin import open_film
     from mocapd.clock import monotonic_ns
     from mocapd.pipeline.rehearsal import rehearse
-    from mocapd.session.side_by_side import each_camera
+    from mocapd.session.worker_thread import each_camera
     from mocapd.tracking.build import build_body_tracker
     from mocapd.tracking.known import known_shape
 

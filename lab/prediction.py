@@ -15,7 +15,7 @@ from mocapd.app.terminal.progress import ProgressBars
 from mocapd.calibration.from_origin import from_capture
 from mocapd.cli.options import ConfigOption, SetOption
 from mocapd.evaluate.capture_eval import Case, open_case
-from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
+from mocapd.session.tracker_setup import ReadyTracker, cache_resources, ready_tracker
 
 
 def prediction(
@@ -30,7 +30,7 @@ def prediction(
     effective = prepared_config(config, settings, tracker)
     own = effective.tracker
     with ProgressBars() as progress:
-        resources = cached(effective.cache_dir, progress)
+        resources = cache_resources(effective.cache_dir, progress)
 
         def build(case: Case) -> ReadyTracker:
             known = from_capture(case.folder).assuming(own.stature_m)

@@ -13,8 +13,8 @@ import typer
 import typer.main
 
 from mocapd.cli.command_list import app
-from mocapd.config.config_keys import Key, entry_keys, shown
-from mocapd.config.effective import known_keys
+from mocapd.config.config_keys import Key, as_toml, entry_keys
+from mocapd.config.effective import all_keys
 from mocapd.config.sources import env_name
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def _option(record: tuple[str, str] | None) -> str:
 def configuration_page() -> str:
     """docs/configuration.md: every key with its default, its variable and its meaning."""
     lines = ["| key | default | environment | meaning |", "|---|---|---|---|"]
-    for path, key in known_keys().items():
+    for path, key in all_keys().items():
         lines.append(f"| `{path}` | {_default(key)} | `{env_name(path)}` | {key.help} |")
         lines += [f"| `{one.path}` | {_default(one)} | | {one.help} |" for one in entry_keys(key)]
     return _CONFIGURATION + "\n".join(lines) + "\n"
@@ -103,7 +103,7 @@ def _default(key: Key) -> str:
         return "must be given"
     if key.default is None:
         return "none"
-    return key.default_text or f"`{shown(key.default)}`"
+    return key.default_text or f"`{as_toml(key.default)}`"
 
 
 def main(folder: Path) -> None:

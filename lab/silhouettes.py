@@ -21,7 +21,7 @@ from mocapd.body.shape import BodyShape
 from mocapd.calibration.from_origin import from_capture
 from mocapd.capture.capture_folder import CaptureFolder, frame_sets, load_folder
 from mocapd.errors import ConfigError
-from mocapd.session.tracker_setup import cached, ready_tracker
+from mocapd.session.tracker_setup import cache_resources, ready_tracker
 from mocapd.tracking.base import Track
 from mocapd.tracking.body_tracker import BodyTracker
 from mocapd.tracking.cues.clothes.camera_views import CameraView
@@ -40,7 +40,7 @@ def silhouettes(
     config = prepared_config(None, None, tracker)
     typer.echo(f"{'capture':24}" + "".join(f"{kind:>12}" for kind in _KINDS) + "   pictures")
     with ProgressBars() as progress:
-        resources = cached(config.cache_dir, progress)
+        resources = cache_resources(config.cache_dir, progress)
         for folder in captures:
             capture = load_folder(folder)
             known = from_capture(capture).assuming(config.tracker.stature_m)

@@ -1,4 +1,4 @@
-"""Where the files of `calib/` and `systemd/` are: beside the package in a checkout, inside it when installed."""
+"""Paths of the files in `calib/` and `systemd/`: next to the package in a checkout, inside it when installed."""
 
 from pathlib import Path
 

@@ -1,9 +1,8 @@
-"""Processes that end when the process that started them ends, also when that is killed.
+"""Child processes that end with their parent, even if it is killed.
 
-Linux sends the signal (PR_SET_PDEATHSIG) that the child asked for. The alternative is a pipe whose end the child watches; it
-needs a thread, which does not run while a compiler holds the interpreter's lock, and every fork that keeps the other
-end open defeats it. Systems without prctl have only the parent's ordinary clean-up, so a parent ends its children on
-SIGTERM and SIGHUP, too.
+The child requests a signal from Linux (PR_SET_PDEATHSIG). The alternative, a pipe watched by the child, needs a thread,
+which stops while a compiler holds the interpreter's lock, and any fork that inherits the other end defeats it. Systems
+without prctl have only the parent's clean-up, so a parent also ends its children on SIGTERM and SIGHUP.
 """
 
 import ctypes
@@ -19,20 +18,20 @@ _BEGIN = (
 
 
 def end_with_parent(parent_pid: int, number: int) -> None:
-    """Called by a child before its work: when the process `parent_pid` ends, the child gets this signal.
+    """Call in a child before its work: when the process `parent_pid` ends, the child gets the signal `number`.
 
-    The signal comes when the parent's thread that started the child ends, so that must be a thread that outlives it.
+    The signal comes at the end of the parent's thread that started the child, so that thread must outlive the child.
     """
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, number)
-    if os.getppid() != parent_pid:  # it ended before we asked
+    if os.getppid() != parent_pid:  # the parent ended before the request
         os._exit(1)
 
 
 def child_command(program: str, *arguments: str) -> list[str]:
-    """The command line of a Python process that gets SIGTERM when the calling process ends.
+    """The command line of a Python process that gets SIGTERM at the end of the calling process.
 
-    program: Python statements that run it, with `sys` imported; arguments: its `sys.argv[1:]`.
+    program: Python statements, with `sys` imported; arguments: its `sys.argv[1:]`.
     """
     began = str(os.getpid()), str(int(signal.SIGTERM))
     return [sys.executable, "-c", _BEGIN + program, *began, *arguments]

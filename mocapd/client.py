@@ -1,4 +1,4 @@
-"""What a Python game imports: the newest body pose of a running mocapd.
+"""Client library for Python games: the newest body pose of a running mocapd.
 
     for body in mocapd.client.stream():
         if body.tracked:
@@ -34,7 +34,7 @@ ENDPOINT = "tcp/127.0.0.1:7447"
 RETRY_S = 0.2  # pause between two attempts to connect [s]
 ATTEMPT_S = 1.0  # how long one attempt may take [s]
 POLL_S = 0.002  # how often `Client.wait` looks [s]
-_KEPT = 8  # frames that wait for a game, so that `predict` sees how the person moved
+_RING_FRAMES = 8  # queued frames, from which `predict` estimates the motion
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,14 +57,14 @@ class JointPose:
 class Body:
     """A person at one instant: `body["leftHand"]` is a JointPose, by VRM 1.0 bone name.
 
-    `frame` is the message as it was sent. While `tracked` is false there are no joints.
+    `frame` is the received message. While `tracked` is false there are no joints.
     """
 
     frame: wire.SkeletonFrame
 
     @property
     def tracked(self) -> bool:
-        """Whether a pose is known, seen or predicted for a moment."""
+        """True if the frame has a pose, measured or briefly predicted."""
         return bool(self.frame.joints)
 
     @property
@@ -74,7 +74,7 @@ class Body:
 
     @property
     def seq(self) -> int:
-        """Number of the frame; a gap is frames this program was too slow for."""
+        """Number of the frame; a gap means frames that this program was too slow for."""
         return self.frame.seq
 
     @property
@@ -84,16 +84,16 @@ class Body:
 
     @property
     def latency_s(self) -> float:
-        """From the middle of the exposure until the daemon published [s]."""
+        """Time from the middle of the exposure to the daemon's publication [s]."""
         return (self.frame.publish_monotonic_ns - self.frame.capture_monotonic_ns) * 1e-9
 
     @property
     def age_s(self) -> float:
-        """From the middle of the exposure until now [s]; on two machines as good as their clocks."""
+        """Time since the middle of the exposure [s]; across machines as accurate as their clocks."""
         return (time.time_ns() - self.frame.capture_unix_ns) * 1e-9
 
     def __getitem__(self, name: str) -> JointPose:
-        """Raises KeyError for a bone that the frame has not, as every bone while not tracked."""
+        """The joint of a bone. Raises KeyError for a bone without a pose, as all bones while not tracked."""
         joint = self.frame.joints[name]
         return JointPose(
             joint.p, joint.r, joint.l, joint.c, math.inf if joint.u is None else joint.u
@@ -108,7 +108,7 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """Where the daemon is and what to listen to.
+    """Address of the daemon and selection of its messages.
 
     endpoint: Zenoh endpoint of the daemon, or of the router it joined
     instance: name of the daemon; `*`: any
@@ -148,10 +148,9 @@ class Link:
 
 
 class Client:
-    """A connection that keeps the newest body; for game loops that ask once per picture.
+    """A connection that holds the newest body, for game loops that poll once per picture.
 
-    The connection comes back by itself when the daemon restarts. Any thread may call `close`, one
-    thread at a time the rest.
+    It reconnects when the daemon restarts. `close` is thread-safe; the rest is for one thread at a time.
     """
 
     def __init__(self, link: Link | None = None) -> None:
@@ -161,7 +160,7 @@ class Client:
         self._session = self._opened.enter_context(connect(link))
         with zenoh_call():
             self._subscriber = self._opened.enter_context(
-                self._session.declare_subscriber(link.key, zenoh.handlers.RingChannel(_KEPT))
+                self._session.declare_subscriber(link.key, zenoh.handlers.RingChannel(_RING_FRAMES))
             )
             self._healths = self._opened.enter_context(
                 self._session.declare_subscriber(link.health_key, zenoh.handlers.RingChannel(1))
@@ -169,30 +168,30 @@ class Client:
             hold_session(self._session, self._subscriber, owner=self)
         self._health: Health | None = None
         self._rest_key = link.rest_key
-        self._predictor: PosePredictor | None = None  # from the first `predict` on
-        # a thread left waiting in Zenoh would abort the interpreter's exit
+        self._predictor: PosePredictor | None = None  # created by the first `predict`
+        # a thread that waits in Zenoh would abort the process at exit
         atexit.register(self.close)
 
     def poll(self) -> Body | None:
-        """The newest body that was not fetched yet; None: nothing new. Never waits."""
+        """The newest unread body; None without one. Never waits."""
         with zenoh_call():
             samples = self._waiting()
         return self._newest(samples)
 
     def wait(self, timeout_s: float) -> Body | None:
-        """The next body, waiting up to `timeout_s` [s]; None: none came."""
+        """The next body, waiting up to `timeout_s` [s]; None after the timeout."""
         deadline_s = time.monotonic() + timeout_s
         while (body := self.poll()) is None and time.monotonic() < deadline_s:
             time.sleep(POLL_S)
         return body
 
     def predict(self, to_time: float | None = None) -> Body | None:
-        """The body at a moment [Unix time, s] for which no frame is there yet; None: until now. Never waits.
+        """Predicts the body at `to_time` [Unix time, s], now when None. Never waits.
 
-        Call it once per picture with the time at which that will be seen. It hides what cameras, tracking and smoothing
-        take, and lets a picture of 90 Hz have a pose of its own each time. What it knows are the frames that came by now;
-        at most a tenth of a second ahead, then the pose stays. None before the first frame. While `lost`, and for a
-        time before the newest frame's, it is the newest body.
+        Call it once per picture with the time at which that will be visible. It compensates the delay of cameras, tracking
+        and smoothing, and gives each picture of a 90 Hz display a pose of its own. It extrapolates the frames received so
+        far by at most 0.1 s, then the pose stays. None before the first frame. Returns the newest body while `lost`, and
+        for times before the newest frame.
         """
         if self._predictor is None:
             self._predictor = PosePredictor()
@@ -202,9 +201,9 @@ class Client:
         return None if frame is None else Body(frame)
 
     def rest(self, timeout_s: float = 1.0) -> RestSkeleton | None:
-        """The person's skeleton in the T-pose as it is known now, asked of the daemon, which takes a
-        millisecond; None: nobody answers, or nobody was tracked yet. It changes when the daemon is calibrated
-        anew, and a little while it learns the body. Raises InputError when what comes is none of this version.
+        """Queries the person's current T-pose skeleton, which takes a millisecond; None without an answer or before the
+        first tracked person. It changes with a new calibration, and slightly while the daemon learns the body. Raises
+        InputError for an answer of another version.
         """
         with zenoh_call():
             samples = limited_answers(self._session, self._rest_key, timeout_s, MOST_ANSWERS_BYTES)
@@ -213,8 +212,8 @@ class Client:
         return None
 
     def health(self) -> Health | None:
-        """How the daemon fares, as it said last, about once a second; None before the first time. `slowness` is one line
-        while it is too slow for its cameras. Never waits. Raises InputError when what comes is none of this version."""
+        """The daemon's last health message, sent about once a second; None before the first. `slowness` is one line
+        while it is too slow for its cameras. Never waits. Raises InputError for a message of another version."""
         with zenoh_call():
             samples = list(iter(self._healths.try_recv, None))
         if samples:
@@ -223,7 +222,7 @@ class Client:
         return self._health
 
     def __iter__(self) -> Iterator[Body]:
-        """Every newest body, waiting for ever: also while the daemon restarts."""
+        """Iterates over newest bodies; waits without limit, also while the daemon restarts."""
         samples = iter(self._subscriber)
         while True:
             with zenoh_call():
@@ -236,7 +235,7 @@ class Client:
             yield body
 
     def _waiting(self) -> list[zenoh.Sample]:
-        """What came meanwhile, the newest last."""
+        """The queued samples, newest last."""
         return list(iter(self._subscriber.try_recv, None))
 
     def _newest(self, samples: list[zenoh.Sample]) -> Body | None:
@@ -249,7 +248,7 @@ class Client:
         return body
 
     def close(self) -> None:
-        """Disconnect; may be called twice. Ends an iteration under way in another thread."""
+        """Disconnects; idempotent. Ends an iteration in another thread."""
         atexit.unregister(self.close)
         with zenoh_call():
             self._opened.close()
@@ -268,7 +267,7 @@ def stream(
     person: int = 0,
     connect_timeout_s: float | None = 2.0,
 ) -> Iterator[Body]:
-    """Bodies as they come, the newest each time; waits while the daemon restarts.
+    """Iterates over newest bodies; waits while the daemon restarts.
 
     Raises UnavailableError when no mocapd is found within `connect_timeout_s` [s] (None: waits),
     InputError when what arrives is no frame of this version. For TLS see `Client` and `Link`.
@@ -289,16 +288,16 @@ async def astream(
     loop = asyncio.get_running_loop()
     newest: asyncio.Queue[zenoh.Sample] = asyncio.Queue(maxsize=1)
 
-    def keep(sample: zenoh.Sample) -> None:
+    def replace_newest(sample: zenoh.Sample) -> None:
         if newest.full():
             newest.get_nowait()
         newest.put_nowait(sample)
 
-    def arrived(sample: zenoh.Sample) -> None:  # on Zenoh's thread
-        loop.call_soon_threadsafe(keep, sample)
+    def on_sample(sample: zenoh.Sample) -> None:  # on Zenoh's thread
+        loop.call_soon_threadsafe(replace_newest, sample)
 
-    # on Zenoh's own thread: the Python thread it would else start hinders the interpreter's exit
-    handler = zenoh.handlers.Callback(arrived, indirect=False)
+    # indirect=False: Zenoh would start a Python thread that blocks the interpreter's exit
+    handler = zenoh.handlers.Callback(on_sample, indirect=False)
     with await _aconnect(link) as session, session.declare_subscriber(link.key, handler):
         while True:
             yield _body(await newest.get())
@@ -309,7 +308,7 @@ def _body(sample: zenoh.Sample) -> Body:
 
 
 def connect(link: Link) -> zenoh.Session:
-    """A session on which a mocapd is alive, tried until the link's time is over, for who listens by itself.
+    """Opens a session on which a mocapd is alive, for callers with their own subscribers; retries until the timeout.
 
     Raises UnavailableError.
     """
@@ -325,7 +324,7 @@ def connect(link: Link) -> zenoh.Session:
 
 
 async def _aconnect(link: Link) -> zenoh.Session:
-    """As `connect`; between two attempts it can be cancelled."""
+    """As `connect`; can be cancelled between attempts."""
     started_s = time.monotonic()
     while True:
         try:

@@ -11,12 +11,12 @@ def monotonic_ns() -> int:
 
 
 def suspended_ns() -> int:
-    """How long the machine has slept since it was booted [ns]: CLOCK_BOOTTIME goes on then, CLOCK_MONOTONIC stands."""
+    """Time suspended since boot [ns]: CLOCK_BOOTTIME includes suspension, CLOCK_MONOTONIC does not."""
     return time.clock_gettime_ns(time.CLOCK_BOOTTIME) - monotonic_ns()
 
 
 def unix_from_monotonic_ns() -> int:
-    """What to add to a monotonic time to get Unix time [ns]; changes when the wall clock is set."""
+    """Offset from monotonic to Unix time [ns]; changes when the wall clock is set."""
     return time.clock_gettime_ns(time.CLOCK_REALTIME) - monotonic_ns()
 
 

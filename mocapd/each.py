@@ -1,7 +1,6 @@
-"""What is done with each of several things, one after the other unless who makes the tracker brings threads.
+"""The map over cameras of the numeric core: sequential, unless the caller supplies one with threads.
 
-The numeric core starts none of its own. Whatever is done with one thing touches nothing of another's: the result is the same,
-bit by bit, in whatever order.
+The numeric core starts no threads. The work on each item is independent, so results are bitwise equal in any order.
 """
 
 from collections.abc import Callable, Iterable
@@ -12,7 +11,7 @@ R = TypeVar("R")
 
 
 class Each(Protocol):
-    """The results of `work`, in order; it returns, or raises what one of them raised, when all are done."""
+    """Maps `work` over items; results in order. Returns, or raises an exception of the work, when all items are done."""
 
     def __call__(self, work: Callable[[T], R], of: Iterable[T]) -> list[R]:
         """See Each."""
@@ -21,4 +20,4 @@ class Each(Protocol):
 
 def in_turn(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
     """See Each."""
-    return [work(one) for one in of]
+    return [work(item) for item in of]

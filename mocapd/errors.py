@@ -1,4 +1,4 @@
-"""Every expected trouble by name. Messages say what went wrong, where, and how to mend it."""
+"""Exceptions for expected errors. Messages contain the problem, its location, and the fix."""
 
 import errno
 from collections.abc import Iterator
@@ -9,18 +9,18 @@ _NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 
 
 def mend_of(error: OSError, otherwise: str) -> str:
-    """The mend of a file that cannot be written: room, where that is what lacks."""
+    """The fix for a file that cannot be written: free space if the disk is full."""
     return "make room on that disk" if error.errno in _NO_ROOM else otherwise
 
 
 def one_line(text: str) -> str:
-    """As it may be told in a terminal or a log. Others named what is told of: a file, a webcam, a node of the network, and
-    a name may hold line breaks and what a terminal obeys."""
+    """Replaces unprintable characters, for terminals and logs: names of files, webcams and nodes may contain line breaks
+    and terminal escapes."""
     return text if text.isprintable() else "".join(c if c.isprintable() else " " for c in text)
 
 
 class MocapdError(Exception):
-    """Base of all expected errors, one line each; `exit_code` is what the command line ends with (sysexits)."""
+    """Base of all expected errors, one line each; `exit_code` is the command's exit code (sysexits)."""
 
     exit_code = 70
 
@@ -37,8 +37,8 @@ class InputError(MocapdError):
 
 
 class MalformedError(InputError):
-    """Bytes or text from outside are not what they should be; raised by `boundary`, which does not know
-    where they came from: whoever reads them says so in an error of its own."""
+    """Invalid bytes or text from outside; raised by `boundary` without a location, which the caller adds in an error of
+    its own."""
 
 
 class ConfigError(MocapdError):
@@ -55,7 +55,7 @@ class UsageError(MocapdError):
 
 @contextmanager
 def usage_errors() -> Iterator[None]:
-    """For values that the command line alone gives: a ConfigError of the block is raised as a UsageError."""
+    """Converts a ConfigError of the block to a UsageError, for values that only the command line gives."""
     try:
         yield
     except ConfigError as error:
@@ -63,21 +63,21 @@ def usage_errors() -> Iterator[None]:
 
 
 class NewerFileError(ConfigError):
-    """A file of ours is of a schema that only a newer mocapd reads: never written over, never guessed at (78)."""
+    """A file has the schema of a newer mocapd: never overwritten, never guessed at (78)."""
 
 
 class MissingExtraError(ConfigError):
-    """A library of an extra is not installed: what only some commands or settings need (78)."""
+    """The library of an extra is not installed, which only some commands or settings need (78)."""
 
 
 class UnavailableError(MocapdError):
-    """A resource such as a camera, a port or a service is not to be had now (69 EX_UNAVAILABLE)."""
+    """A resource such as a camera, a port or a service is unavailable (69 EX_UNAVAILABLE)."""
 
     exit_code = 69
 
 
 class AmbiguousCameraError(UnavailableError):
-    """Several cameras may be the one that is meant: people must say which, by plugging or in the configuration."""
+    """Several cameras match an identity: the user must decide, by plugging or in the configuration."""
 
 
 class CannotCreateError(MocapdError):
@@ -106,7 +106,7 @@ class EndOfStream(MocapdError):
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Trouble told to the person: what, where (a camera, a file; may be empty), and how to mend it."""
+    """Trouble for the user: the problem, its location (a camera, a file; may be empty), and the fix."""
 
     what: str
     where: str = ""

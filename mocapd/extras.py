@@ -31,7 +31,7 @@ def require_extra(extra: str, where: str, otherwise: str = "") -> None:
 
 
 def reinstall_command() -> str:
-    """What installs this mocapd anew, from the wheel that `make dist` builds in a checkout."""
+    """The command that reinstalls this mocapd, from the wheel that `make dist` builds in a checkout."""
     wheel, prefix = "dist/mocapd-*.whl", Path(sys.prefix)
     if (prefix / "pipx_metadata.json").is_file():
         return f"pipx install --force {wheel}"

@@ -1,4 +1,4 @@
-"""One process at a time makes what is kept in a cache; the others wait, and find it there."""
+"""Lock file by which one process at a time fills a cache; the others wait and then use it."""
 
 import fcntl
 import os
@@ -9,16 +9,16 @@ from pathlib import Path
 
 @contextmanager
 def one_at_a_time(folder: Path, name: str) -> Iterator[None]:
-    """Hold the lock file `name` of a folder, which is made if need be, once nobody else does.
+    """Holds the lock file `name` of a folder, which is created if missing.
 
-    Where no lock can be had nobody waits: each makes its own.
+    Without support for locks no process waits: each fills its own cache.
     """
     with ExitStack() as held:
         with suppress(OSError):
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-            # whatever is there stays as it is, and nothing beyond the folder is touched
+            # does not change an existing file, and follows no link out of the folder
             flags = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
             lock = os.open(folder / name, flags, 0o600)
             held.callback(os.close, lock)
-            fcntl.flock(lock, fcntl.LOCK_EX)  # let go when it is closed, or the process is gone
+            fcntl.flock(lock, fcntl.LOCK_EX)  # released by closing, or by the end of the process
         yield

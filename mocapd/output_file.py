@@ -1,4 +1,4 @@
-"""A file that a command writes for its user: what is there already is replaced with `--force` only."""
+"""Output files of commands: an existing file is replaced with `--force` only."""
 
 import os
 import tempfile
@@ -16,14 +16,14 @@ _HEAD_BYTES = 4096
 
 @dataclass(frozen=True, slots=True)
 class FileKind:
-    """A format. name: with its article; begins_so: whether the first bytes of a file are of this format."""
+    """A format. name: with its article; begins_so: tests the first bytes of a file."""
 
     name: str
     begins_so: Callable[[bytes], bool]
 
 
 def kind_by_magic(name: str, *magic: bytes) -> FileKind:
-    """The kind of files that begin with one of these bytes."""
+    """The format of files with one of these magic numbers."""
     return FileKind(name, lambda head: head.startswith(magic))
 
 
@@ -33,11 +33,11 @@ PNG = kind_by_magic("a PNG picture", b"\x89PNG\r\n\x1a\n")
 
 @dataclass(frozen=True, slots=True)
 class OutputFile:
-    """Where a command writes one file, and what it may replace there.
+    """One output file of a command, and the rules of replacement.
 
-    kind: what is written; force: replace the file that is there, but none of another kind in a folder that the command
-    reads; inputs: what the command reads, which is never replaced; option: that names the file, empty for an argument. An
-    empty file is of every kind.
+    kind: format of the file; force: replace an existing file, but none of another format in a folder that the command
+    reads; inputs: paths that the command reads, never replaced; option: that names the file, empty for an argument. An
+    empty file has every format.
     """
 
     path: Path
@@ -47,7 +47,7 @@ class OutputFile:
     option: str = "--out"
 
     def check(self) -> None:
-        """For before a long run: raises CannotCreateError when the file could not be written now."""
+        """Call before a long run: raises CannotCreateError when the file is not writable."""
         self.check_replaceable()
         folder, prefix = self.path.absolute().parent, f".{self.path.name}."
         try:
@@ -59,17 +59,17 @@ class OutputFile:
 
     @contextmanager
     def writing(self) -> Iterator[Path]:
-        """Yield a path to write to; that file becomes `path` when all went well. Raises CannotCreateError."""
+        """Yields a path to write to, which atomically becomes `path` on success. Raises CannotCreateError."""
         self.check_replaceable()
         try:
             with whole_file(self.path) as partial:
                 yield partial
-                self.check_replaceable()  # somebody else's may have come meanwhile
+                self.check_replaceable()  # another process may have created it
         except OSError as error:
             raise self._cannot(error) from None
 
     def check_replaceable(self) -> None:
-        """Raises CannotCreateError for what is there and must stay."""
+        """Raises CannotCreateError for a file that must not be replaced."""
         path = str(self.path)
         elsewhere = "choose another name" + (f" with {self.option}" if self.option else "")
         if is_absent(self.path):
@@ -80,7 +80,7 @@ class OutputFile:
         try:
             head = read_beginning(self.path, _HEAD_BYTES)
         except MissingError:
-            return  # it went meanwhile
+            return  # removed meanwhile
         except InputError as error:
             raise CannotCreateError(
                 f"is there already, and {error.what}", path, elsewhere

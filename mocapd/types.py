@@ -1,4 +1,4 @@
-"""The data that stages hand to each other: frozen records of arrays. Nothing here computes.
+"""The data types between stages: frozen records of arrays, without computation.
 
 Frames of reference (the only place where axes are defined):
 
@@ -29,9 +29,9 @@ Bytes = NDArray[np.uint8]
 class Frame:
     """One picture of one camera.
 
-    `t_ns` is the middle of the exposure on CLOCK_MONOTONIC as well as it is known (for webcams:
-    the driver's stamp), not the time of arrival. `seq` counts what the source delivered; gaps are
-    lost frames. `pixels` (height, width, 3) uint8 BGR, C-contiguous, read-only. `encoded`: the JPEG that
+    `t_ns` is the best estimate of the middle of the exposure on CLOCK_MONOTONIC (for webcams: the
+    driver's stamp), not the time of arrival. `seq` counts the source's frames; gaps are lost
+    frames. `pixels` (height, width, 3) uint8 BGR, C-contiguous, read-only. `encoded`: the JPEG that
     they were decoded from, as the camera delivered it; None where it delivered none.
     """
 
@@ -44,10 +44,10 @@ class Frame:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrameSet:
-    """Frames of several cameras that belong together; a camera that has none is absent.
+    """Simultaneous frames of several cameras; a camera without a frame is absent.
 
-    `t_ns` is the instant the pose is asked for: of live cameras the time of the newest frame, of a
-    recorded folder that of the rig's first camera that is present. `spread_ns` is the largest
+    `t_ns` is the time of the requested pose: for live cameras that of the newest frame, for a
+    recorded folder that of the rig's first present camera. `spread_ns` is the largest
     distance of a frame's own time from `t_ns`.
     """
 
@@ -106,7 +106,7 @@ class Pose:
 
 
 class Tracking(StrEnum):
-    """`live`: evidence in this frame; `coasting`: predicted for a moment; `lost`: no pose is known."""
+    """`live`: evidence in this frame; `coasting`: briefly predicted; `lost`: no pose."""
 
     LIVE = "live"
     COASTING = "coasting"
@@ -118,9 +118,9 @@ class BodyState:
     """A person at one instant. Lost: `pose` and `joints_m` are None and every confidence is 0.
 
     joints_m (J,3) [m, world]; confidence (J,) in 0..1, near 0 for a joint without evidence;
-    `cameras`: names of the cameras whose evidence was used; smoothing_lag_ns: how much the tracker's filter and smoothing
-    delay the pose of a person who moves, about; uncertainty_m (J,): one standard deviation of each joint's place, the root
-    mean square over the world's axes [m], inf where nothing is known of it; left out: the tracker tells none.
+    `cameras`: names of the cameras whose evidence was used; smoothing_lag_ns: approximate lag of a moving person's
+    pose by the tracker's filter and smoothing; uncertainty_m (J,): one standard deviation of each joint's position, the
+    root mean square over the world's axes [m], inf where unknown; omitted if the tracker estimates none.
     """
 
     t_ns: int

@@ -1,4 +1,4 @@
-"""Files written whole or not at all: beside their place, flushed to the disk, then moved there."""
+"""Atomic writes: to a temporary file in the same folder, flushed to the disk, then renamed."""
 
 import os
 import re
@@ -13,14 +13,13 @@ _OLD_S = 24 * 3600.0  # no file takes that long to write
 
 @contextmanager
 def whole_file(path: Path, private: bool = False) -> Iterator[Path]:
-    """Yield a path beside `path` to write to; that file takes the place of `path` when all went well.
+    """Yields a temporary path in the same folder, which atomically replaces `path` on success.
 
-    The name ends as that of `path` does, as some writers ask for. `private`: nobody else may read it,
-    from its first byte on; an earlier one that others could read is replaced. When the block raises,
-    `path` stays as it was and nothing is left beside it; what a process that was killed left of it
-    goes. Raises OSError: the caller tells what cannot be written.
+    The name has the suffix of `path`, which some writers require. `private`: readable by this user only, from the first
+    byte on; replaces a readable earlier file. When the block raises, `path` is unchanged and the temporary file removed;
+    files left by killed processes are removed too. Raises OSError.
     """
-    # several processes, or threads, may write the same file: the last one's stays
+    # several processes or threads may write the same file: the last one wins
     mark = f"{os.getpid()}.{secrets.token_hex(3)}"
     partial = path.with_name(f".{path.stem}.{mark}{path.suffix}")
     try:
@@ -36,18 +35,17 @@ def whole_file(path: Path, private: bool = False) -> Iterator[Path]:
 
 
 def tidy(folder: Path, now_s: float, stem: str | None = None) -> None:
-    """Remove what killed processes left half written in a folder: of all files, or of those of `stem`.
+    """Removes temporary files of killed processes from a folder: all, or those of `stem`.
 
-    now_s: when something was written there. A process may have been given the number of a dead one:
-    what is a day older goes too.
+    now_s: time of a recent write there. Also removes files a day older, as a new process may have a dead one's pid.
     """
-    with suppress(OSError):  # it is not there, or not ours to tidy
-        for one in folder.iterdir():
-            found = _PARTIAL.fullmatch(one.name)
-            if found is None or stem not in (None, found[1]):
+    with suppress(OSError):  # absent, or without permission
+        for file in folder.iterdir():
+            name = _PARTIAL.fullmatch(file.name)
+            if name is None or stem not in (None, name[1]):
                 continue
-            if not _alive(int(found[2])) or one.stat().st_mtime < now_s - _OLD_S:
-                one.unlink(missing_ok=True)
+            if not _alive(int(name[2])) or file.stat().st_mtime < now_s - _OLD_S:
+                file.unlink(missing_ok=True)
 
 
 def _alive(pid: int) -> bool:

@@ -13,7 +13,7 @@ from mocapd.assets import asset_path
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.session.prepared_marker import remember
-from mocapd.session.tracker_setup import cached, make_caches, ready_tracker
+from mocapd.session.tracker_setup import cache_resources, make_caches, ready_tracker
 from mocapd.sim.film import load_film
 from mocapd.sim.scenario import load_scenario
 from tests.conftest import ROOT
@@ -34,7 +34,7 @@ def _room() -> Calibration:
 
 def _compile(tracker: str) -> None:
     """As a daemon does before it is live."""
-    ready_tracker(tracker, _room(), cached(CACHE, _quiet), _quiet)
+    ready_tracker(tracker, _room(), cache_resources(CACHE, _quiet), _quiet)
 
 
 def film_and_markerless() -> None:

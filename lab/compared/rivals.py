@@ -10,8 +10,8 @@ from lab.compared.compare import BASELINE
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.published.hecht2009.params import Params as Hecht2009Params
 from mocapd.published.wang2011.params import published
-from mocapd.session.side_by_side import each_camera
 from mocapd.session.tracker_setup import ReadyTracker
+from mocapd.session.worker_thread import each_camera
 from mocapd.trackers.registry import Resources, build
 from mocapd.tracking.build import ProfileParams
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams

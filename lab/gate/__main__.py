@@ -19,7 +19,7 @@ from lab.gate.verdict import failures
 from mocapd.app.terminal.progress import ProgressBars
 from mocapd.cli.options import ConfigOption, SetOption
 from mocapd.errors import InputError
-from mocapd.session.tracker_setup import Progress, cached, ready_tracker
+from mocapd.session.tracker_setup import Progress, cache_resources, ready_tracker
 
 ROOT = Path(__file__).resolve().parents[2]
 _NOT_PASSED = 1
@@ -61,7 +61,7 @@ def gate(
         name = effective.tracker.name
         rows: list[GateRow] = []
         with ProgressBars() as progress:
-            resources = cached(effective.cache_dir, progress)
+            resources = cache_resources(effective.cache_dir, progress)
             for one in cases_of(
                 tuple(sets.split(",")), clips, captures, effective.cache_dir, progress
             ):

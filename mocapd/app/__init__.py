@@ -1,1 +1,1 @@
-"""What the commands run: hosts of the setup, the daemon's run with signals and status line, the first start."""
+"""Implementation of the commands: the setup's hosts, the daemon's main loop, the first start."""

@@ -1,4 +1,4 @@
-"""What must be set before the heavy libraries are at work: caches and threads."""
+"""Configures heavy libraries before their import: caches and threads."""
 
 import os
 import tempfile
@@ -8,7 +8,7 @@ import mocapd
 from mocapd.boundary.folders import require_own_folder
 from mocapd.errors import CannotCreateError, PermissionDeniedError, mend_of
 
-# Of these numba takes the first that has a place for a function: the kernels' own, then its usual ones.
+# numba takes the first locator that accepts a function: the kernels' own, then its default ones.
 LOCATORS = (
     "mocapd.kernels.locator.KernelLocator,UserProvidedCacheLocator,InTreeCacheLocator,UserWideCacheLocator,"
     "IPythonCacheLocator,ZipCacheLocator"
@@ -21,15 +21,15 @@ def prepare_libraries(cache_dir: Path) -> None:
     import cv2
 
     use_cache_dir(cache_dir)
-    # a task of under 8 ms waits longer for a pool of threads than it takes
+    # for tasks under 8 ms the thread pool costs more than it saves
     cv2.setNumThreads(1)
 
 
 def use_cache_dir(cache_dir: Path) -> None:
-    """Make the folder, and have numba keep its code there when it cannot beside the source.
+    """Makes the folder; numba stores its code there if the package's folder is read-only.
 
-    Before anything imports numba, which reads the variable then. numba runs what it finds: a folder
-    that others could write to is refused. Raises CannotCreateError or PermissionDeniedError.
+    Call before numba's import, which reads the variables. numba executes cached code, so a folder that others could
+    write to is refused. Raises CannotCreateError or PermissionDeniedError.
     """
     _own_folder(cache_dir)
     os.environ["NUMBA_CACHE_LOCATOR_CLASSES"] = LOCATORS

@@ -1,1 +1,1 @@
-"""The one way in for bytes and text from outside: what comes out is a value or a named error."""
+"""Validation of all bytes and text from outside: returns a value or raises a named error."""

@@ -1,4 +1,4 @@
-"""Files that somebody else named: regular ones, of bounded size, under a path the system can take."""
+"""Reads user-named files: regular files of bounded size with a valid path."""
 
 import os
 import stat
@@ -18,14 +18,11 @@ class MissingError(InputError):
 def read_file(path: Path, most_bytes: int) -> bytes:
     """The bytes of a regular file. Raises MissingError, or InputError naming the file.
 
-    A device, a pipe or a socket is refused before it is read: /dev/zero has no end, and a pipe that
-    nobody writes to would be waited for.
+    A device, a pipe or a socket is refused before reading: /dev/zero has no end, and a pipe without a writer blocks.
     """
     data = read_beginning(path, most_bytes + 1)
     if len(data) > most_bytes:
-        raise InputError(
-            f"is larger than {_size(most_bytes)}", str(path), "is it the file that was meant?"
-        )
+        raise InputError(f"is larger than {_size(most_bytes)}", str(path), "is it the right file?")
     return data
 
 
@@ -38,11 +35,11 @@ def read_beginning(path: Path, most_bytes: int) -> bytes:
     try:
         # not blocking: opening a pipe would wait for its writer
         with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as file:
-            told = os.fstat(file.fileno())
-            if not stat.S_ISREG(told.st_mode):
+            state = os.fstat(file.fileno())
+            if not stat.S_ISREG(state.st_mode):
                 raise InputError("is no regular file", str(path), _FIX)
             data: bytes | None = file.read(most_bytes)
-            if data is None:  # a file of the kernel's or of FUSE that would have to be waited for
+            if data is None:  # a file of the kernel or of FUSE that would block
                 raise InputError("has nothing to read", str(path), _FIX)
             return data
     except FileNotFoundError:
@@ -64,8 +61,8 @@ def read_text(path: Path, most_bytes: int) -> str:
 
 
 def user_path(text: str | Path) -> Path:
-    """A path as a person wrote it, `~` replaced. Raises ConfigError for `~nobody`, for a NUL, and for
-    bytes that are no UTF-8: neither messages nor a terminal could say where it leads."""
+    """A user's path with `~` expanded. Raises ConfigError for an unknown user, for a NUL, and for bytes that are no
+    UTF-8, which neither messages nor a terminal could show."""
     shown = ascii(without_password(str(text)))[:_LONGEST_SHOWN]
     try:
         str(text).encode()
@@ -79,11 +76,10 @@ def user_path(text: str | Path) -> Path:
 
 
 def is_absent(path: Path) -> bool:
-    """True only when the system says that nothing is there, under no name of the path.
+    """True only when the system reports that the path does not exist.
 
-    False for anything else, also for what cannot be looked at: a folder that may not be entered, a
-    link whose target is missing, a loop of links. Reading such a path then says what is wrong. A
-    file whose absence means a default must be asked for by this function, not by `is_file`.
+    False for inaccessible paths: a folder without permission, a dangling link, a loop of links. Reading such a path then
+    raises the cause. Where absence means a default, use this function, not `is_file`.
     """
     for part in (path, *path.parents):
         try:
@@ -105,9 +101,9 @@ def _leads_nowhere(link: Path) -> bool:
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is a regular file; no for what can be no path, where pathlib raises.
+    """True for a regular file; False for an invalid path, where pathlib raises.
 
-    Also no for what cannot be looked at: see `is_absent`.
+    Also False for inaccessible paths: see `is_absent`.
     """
     try:
         return path.is_file()
@@ -116,7 +112,7 @@ def is_file(path: Path) -> bool:
 
 
 def is_folder(path: Path) -> bool:
-    """Whether there is a folder; no for what can be no path."""
+    """True for a folder; False for an invalid path."""
     try:
         return path.is_dir()
     except OSError:

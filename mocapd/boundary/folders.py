@@ -1,4 +1,5 @@
-"""Folders of ours: what lies in them is believed, or is nobody else's business."""
+"""Ownership and permissions of our folders: trusted content must not be writable by others, private content not
+readable."""
 
 import grp
 import os
@@ -12,19 +13,19 @@ _OTHERS = stat.S_IRWXG | stat.S_IRWXO
 
 
 def private_folder(path: Path) -> None:
-    """Make the folder for us alone, or narrow what an earlier version made for all. Raises OSError.
+    """Makes a private folder, or removes other users' permissions of an existing one. Raises OSError.
 
-    Left as they are: another user's, a home, and one that everybody may use, such as /tmp.
+    Unchanged are another user's folder, a home, and shared folders such as /tmp.
     """
     path.mkdir(mode=0o700, parents=True, exist_ok=True)
-    told = path.stat()
-    shared = told.st_mode & stat.S_ISVTX or path.resolve() == Path.home()
-    if told.st_uid == os.geteuid() and told.st_mode & _OTHERS and not shared:
-        path.chmod(stat.S_IMODE(told.st_mode) & ~_OTHERS)
+    state = path.stat()
+    shared = state.st_mode & stat.S_ISVTX or path.resolve() == Path.home()
+    if state.st_uid == os.geteuid() and state.st_mode & _OTHERS and not shared:
+        path.chmod(stat.S_IMODE(state.st_mode) & ~_OTHERS)
 
 
 def readable_by_others(path: Path) -> bool:
-    """Whether somebody else could read the file, or list the folder; no where there is none."""
+    """True if another user can read the file or list the folder; False if it does not exist."""
     try:
         return bool(path.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH))
     except (OSError, ValueError):
@@ -32,43 +33,42 @@ def readable_by_others(path: Path) -> bool:
 
 
 def require_own_folder(path: Path) -> None:
-    """That nobody else can change what lies in the folder, for files that are run or believed.
+    """Checks that only this user can change the folder's content, for files that are executed or trusted.
 
-    Raises PermissionDeniedError naming who could; OSError when it cannot be looked at.
+    Raises PermissionDeniedError that names the other user; OSError when the folder is inaccessible.
     """
     real = path.resolve(strict=True)
-    told = real.stat()
-    if told.st_uid != os.geteuid():
+    state = real.stat()
+    if state.st_uid != os.geteuid():
         raise PermissionDeniedError(
-            f"belongs to {_user(told.st_uid)}, who could have this program run anything",
+            f"belongs to {_user(state.st_uid)}, whose code this program would run",
             str(path),
             "take a folder of your own",
         )
-    if _others_may_write(told):
+    if _others_may_write(state):
         raise PermissionDeniedError(
-            f"can be written by others (mode {stat.S_IMODE(told.st_mode):04o}), who could have this"
-            " program run anything",
+            f"can be written by others (mode {stat.S_IMODE(state.st_mode):04o}), whose code this program would run",
             str(path),
             "empty it and `chmod 700` it, or take a folder of your own",
         )
-    for one in real.parents:
-        told = one.stat()
-        if told.st_mode & stat.S_IWOTH and not told.st_mode & stat.S_ISVTX:
+    for parent in real.parents:
+        state = parent.stat()
+        if state.st_mode & stat.S_IWOTH and not state.st_mode & stat.S_ISVTX:
             raise PermissionDeniedError(
-                f"lies in {one}, in which everybody may put another in its place",
+                f"lies in {parent}, in which every user can replace it",
                 str(path),
                 "take a folder of your own",
             )
 
 
-def _others_may_write(told: os.stat_result) -> bool:
-    if told.st_mode & stat.S_IWOTH:
+def _others_may_write(state: os.stat_result) -> bool:
+    if state.st_mode & stat.S_IWOTH:
         return True
-    return bool(told.st_mode & stat.S_IWGRP) and not _is_own_group(told.st_gid)
+    return bool(state.st_mode & stat.S_IWGRP) and not _is_own_group(state.st_gid)
 
 
 def _is_own_group(gid: int) -> bool:
-    """Whether it is the group that many systems give each user, whose folders are 0775."""
+    """True for the user's private group, which many systems create; their folders have mode 0775."""
     try:
         name, group = pwd.getpwuid(os.geteuid()).pw_name, grp.getgrgid(gid)
     except KeyError:

@@ -1,8 +1,8 @@
-"""The segments of a JPEG file, walked within limits: how large it is, and how much work its decoding will be.
+"""Parses the segments of a JPEG file within limits: its size, and the work of decoding it.
 
-A JPEG has no limit to what stands before its picture, nor to how often the picture is scanned: 2,000,000 empty comments
-are 8 MB and held the interpreter for 8 s; a progressive scan is 12 bytes and takes up to 7 ns a pixel. So both
-are counted before OpenCV sees the file. ITU-T T.81, annexes B and G.
+The format limits neither the segments before the picture nor its scans: 2,000,000 empty comments are 8 MB and blocked the
+interpreter for 8 s; a progressive scan has 12 bytes and takes up to 7 ns a pixel. So both are counted before OpenCV
+decodes the file. ITU-T T.81, annexes B and G.
 """
 
 import re
@@ -19,7 +19,7 @@ MOST_SCANS = 64  # ordinary progressive files have 10
 # Scans times pixels: below 1 s. A progressive photograph of 12 Mpixel is within.
 MOST_SCANNED_PIXELS = 120_000_000
 _BUFFERED_SCANS = (
-    8  # what a picture in several scans counts as at least: all coefficients are in memory at once
+    8  # least count of a picture in several scans, which holds all coefficients in memory
 )
 
 _SOI = b"\xff\xd8"
@@ -45,12 +45,12 @@ class JpegHeader:
 
 
 def is_jpeg(data: memoryview) -> bool:
-    """By its first bytes."""
+    """True if the data begins as a JPEG does."""
     return data[: len(_SOI)] == _SOI
 
 
 def jpeg_header(data: memoryview) -> JpegHeader:
-    """What stands before the picture. Raises MalformedError, also for more segments than a picture needs."""
+    """Parses the header. Raises MalformedError, also for too many segments."""
     frame: tuple[int, int, int, int, int] | None = None
     has_tables, scan_at = False, len(data)
     for marker, at, segment in _segments(data):
@@ -111,7 +111,7 @@ def _segments(data: memoryview) -> Iterator[tuple[int, int, memoryview]]:
 
 
 def _scans(data: bytes, at: int) -> int:
-    """How many scans there are up to the picture's end; at most one more than is allowed. Raises MalformedError.
+    """Number of scans up to the picture's end, at most the limit plus one. Raises MalformedError.
 
     Within a scan FF is followed by 00 or a restart: any other marker ends it, as decoders have it.
     """

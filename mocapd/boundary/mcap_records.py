@@ -1,4 +1,4 @@
-"""MCAP files from outside: whole, cut short by a killed writer, or damaged; read from the front.
+"""Reads MCAP files sequentially, also truncated or damaged ones.
 
 The reader of the `mcap` library wants the index at the file's end, and takes what a length says for granted: a
 file of 60 bytes may ask it for 4 GB. Here every length is compared with the file first, and what a chunk says
@@ -39,7 +39,7 @@ _MESSAGE = struct.Struct(
     "<HIQQ"
 )  # channel, sequence, time of log and of publication; then the data
 _LATEST_NS = 2**63 - 1
-# What the library's parsers of single records raise, which trust their bytes.
+# Exceptions of the library's record parsers on malformed input.
 _BAD_RECORD = (McapError, struct.error, UnicodeDecodeError, ValueError, OverflowError, MemoryError)
 
 R = TypeVar("R")
@@ -59,7 +59,7 @@ class McapMessage:
 
 @dataclass(frozen=True, slots=True)
 class McapAttachment:
-    """A file inside of the file."""
+    """An attached file."""
 
     name: str
     media_type: str
@@ -71,10 +71,9 @@ Wanted = Callable[[str, str], bool]  # topic and schema of a channel
 
 
 class McapFile:
-    """Reads one file once, from the front. `ending` and `damaged` are known when `items` has come to its end.
+    """Reads a file sequentially. `ending` and `damaged` are valid after the end of `items`.
 
-    ending: empty for a file that was closed in order, else why reading ended earlier; damaged: chunks that were
-    left out because they do not hold what they say.
+    ending: empty for a complete file, else the reason of an early end; damaged: number of skipped damaged chunks.
     """
 
     def __init__(self, path: Path) -> None:
@@ -86,13 +85,13 @@ class McapFile:
         self._unpacked_bytes = self._unpacked_records = 0
 
     def items(self, wanted: Wanted) -> Iterator[Item]:
-        """Attachments, and messages of the channels that are `wanted`, in the order of the file.
+        """Attachments, and messages of `wanted` channels, in file order.
 
-        Raises InputError for what is no MCAP file at all.
+        Raises InputError if it is no MCAP file.
         """
         self.ending, self.damaged = "", 0
         self._unpacked_bytes = self._unpacked_records = 0
-        with _opened(self.path) as file:
+        with _open_file(self.path) as file:
             size = self.path.stat().st_size
             if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
                 raise InputError(
@@ -105,7 +104,7 @@ class McapFile:
                     self.damaged += 1
 
     def _records(self, file: BinaryIO, size: int) -> Iterator[tuple[int, bytes]]:
-        """Opcode and content of each record of the data section; says in `ending` why there are no more."""
+        """Opcode and content of each record of the data section; sets `ending`."""
         while True:
             head = file.read(_HEAD.size)
             if len(head) < _HEAD.size:
@@ -126,17 +125,17 @@ class McapFile:
                 file.seek(length, 1)
 
     def _read(self, opcode: int, body: bytes, wanted: Wanted, so_far: int) -> Iterator[Item]:
-        """so_far: bytes of the file. Raises MalformedError for a record that does not hold what it says."""
+        """Parses a record. so_far: bytes read of the file. Raises MalformedError."""
         if opcode == Opcode.ATTACHMENT:
-            found = _parsed(Attachment.read, body)
-            yield McapAttachment(found.name, found.media_type, found.data)
+            file = _parse_record(Attachment.read, body)
+            yield McapAttachment(file.name, file.media_type, file.data)
         elif opcode == Opcode.CHUNK:
-            chunk = _parsed(Chunk.read, body)
+            chunk = _parse_record(Chunk.read, body)
             together = self._unpacked_bytes + chunk.uncompressed_size
             if together > _ALWAYS_BYTES + _MOST_SWELLING * so_far:
                 raise MalformedError("a chunk says that it holds far more than its size allows")
             self._unpacked_bytes = together
-            for inner, content in _split(memoryview(_unpacked(chunk))):
+            for inner, content in _split(memoryview(_decompress(chunk))):
                 self._unpacked_records += 1
                 if self._unpacked_records > _ALWAYS_MESSAGES + so_far // _BYTES_A_MESSAGE:
                     raise MalformedError("a chunk has far more messages than its size allows")
@@ -146,14 +145,14 @@ class McapFile:
 
     def _read_inner(self, opcode: int, body: memoryview, wanted: Wanted) -> Iterator[McapMessage]:
         if opcode == Opcode.SCHEMA:
-            schema = _parsed(Schema.read, body)
-            _bounded(self._schemas)[schema.id] = _name(schema.name)
+            schema = _parse_record(Schema.read, body)
+            _with_room(self._schemas)[schema.id] = _name(schema.name)
         elif opcode == Opcode.CHANNEL:
-            if len(body) > _MOST_CHANNEL_BYTES:  # its table of remarks is parsed entry by entry
+            if len(body) > _MOST_CHANNEL_BYTES:  # its metadata map is parsed entry by entry
                 raise MalformedError("says too much of a channel")
-            channel = _parsed(Channel.read, body)
-            kept = _name(channel.topic), _name(channel.message_encoding), channel.schema_id
-            _bounded(self._channels)[channel.id] = kept
+            channel = _parse_record(Channel.read, body)
+            entry = _name(channel.topic), _name(channel.message_encoding), channel.schema_id
+            _with_room(self._channels)[channel.id] = entry
         elif opcode == Opcode.MESSAGE:
             if len(body) < _MESSAGE.size:
                 raise MalformedError("a record is damaged")
@@ -175,7 +174,7 @@ class McapFile:
 _READ = frozenset({Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.ATTACHMENT})
 
 
-def _opened(path: Path) -> BinaryIO:
+def _open_file(path: Path) -> BinaryIO:
     if not is_file(path):
         raise InputError("no such recording", str(path), "check the path")
     try:
@@ -186,7 +185,7 @@ def _opened(path: Path) -> BinaryIO:
         ) from None
 
 
-def _parsed(read: Callable[[ReadDataStream], R], body: bytes | memoryview) -> R:
+def _parse_record(read: Callable[[ReadDataStream], R], body: bytes | memoryview) -> R:
     try:
         return read(ReadDataStream(BytesIO(body)))
     except _BAD_RECORD as error:
@@ -199,20 +198,20 @@ def _name(text: str) -> str:
     return text
 
 
-def _bounded(table: dict[int, R]) -> dict[int, R]:
+def _with_room(table: dict[int, R]) -> dict[int, R]:
     if len(table) >= MOST_CHANNELS:
         raise MalformedError("has too many channels")
     return table
 
 
-def _unpacked(chunk: Chunk) -> bytes:
-    """The records of a chunk, of bounded size, and checked by their sum."""
+def _decompress(chunk: Chunk) -> bytes:
+    """The records of a chunk, bounded in size and verified by checksum."""
     size = chunk.uncompressed_size
     if size > MOST_RECORD_BYTES:
         raise MalformedError("a chunk says that it is too large")
     try:
         if chunk.compression == "zstd":
-            # the frame's own word counts more to the library than the limit it is given
+            # the library ignores its size limit when the frame declares a size
             if zstandard.get_frame_parameters(chunk.data).content_size != size:
                 raise MalformedError("a chunk is of another size than it says")
             data = zstandard.ZstdDecompressor().decompress(chunk.data)

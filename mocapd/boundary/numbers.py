@@ -1,4 +1,4 @@
-"""Numbers from outside, as a page or a file says them: finite, in range, and no `true`."""
+"""Validates numbers from pages and files: finite, in range, and no booleans."""
 
 import math
 from collections.abc import Iterator
@@ -35,8 +35,8 @@ def whole_number_of_text(text: str, low: int, high: int) -> int:
 
 
 def check_numbers(tree: object) -> None:
-    """That every number of a parsed file is finite and between -MOST and MOST, so that nothing that is
-    made of a few of them overflows. Raises MalformedError naming its key."""
+    """Checks that every number of a parsed file is finite and between -MOST and MOST, so that sums and products do not
+    overflow. Raises MalformedError that names its key."""
     for key, value in _numbers(tree, ""):
         if not -MOST <= value <= MOST:
             finite = isinstance(value, int) or math.isfinite(value)
@@ -56,7 +56,7 @@ def _numbers(tree: object, key: str) -> Iterator[tuple[str, float]]:
 
 
 def brief(value: object) -> str:
-    """A value from outside as an error may show it: never long, and never itself an error."""
+    """A short representation of a value for messages; never raises."""
     if isinstance(value, int) and abs(value) >= 10**_MOST_DIGITS:
         return "a number of too many digits"  # repr refuses more than 4,300
     if isinstance(value, str | int | float | bool | None):

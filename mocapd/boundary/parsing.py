@@ -1,8 +1,8 @@
-"""JSON, msgpack and TOML from outside: every way of being damaged has one name, MalformedError.
+"""Parses JSON, msgpack and TOML; every malformed input raises MalformedError.
 
-The libraries raise a dozen kinds: msgspec beside its own DecodeError a UnicodeDecodeError and a
-RecursionError, `int` a ValueError for more than 4,300 digits, and a tree of 600 levels that could be
-read breaks whoever walks it. Here all of them end.
+The libraries raise a dozen kinds: msgspec its DecodeError, a UnicodeDecodeError or a
+RecursionError, `int` a ValueError for more than 4,300 digits, and a parsed tree of 600 levels breaks recursive
+functions. This module converts all of them.
 """
 
 import json
@@ -18,7 +18,7 @@ from mocapd.errors import MalformedError
 T = TypeVar("T")
 
 MOST_NESTED = 32  # levels of objects and lists; nothing of ours has more than 8
-_LONGEST_REASON = 300  # characters of a parser's own words
+_LONGEST_REASON = 300  # characters of a parser's message
 
 # A dotted TOML key of more than MOST_NESTED parts. tomllib takes quadratic time and memory over the
 # parts. It also finds text that only looks like one, which no file of ours holds. Linear: no part
@@ -44,9 +44,9 @@ def parse_json(text: str) -> Any:
 
 def parse_toml(text: str) -> dict[str, Any]:
     """A TOML file's text; the reason of a failure names line and column. Raises MalformedError."""
-    found = _LONG_KEY.search(text)
-    if found is not None:
-        line = text.count("\n", 0, found.start()) + 1
+    long_key = _LONG_KEY.search(text)
+    if long_key is not None:
+        line = text.count("\n", 0, long_key.start()) + 1
         raise MalformedError(f"a key of more than {MOST_NESTED} parts (at line {line})")
     return _read(lambda: tomllib.loads(text))
 
@@ -58,21 +58,21 @@ def convert(tree: object, kind: Any, dec_hook: Callable[[type, Any], Any] | None
 
 def _read(parse: Callable[[], T]) -> T:
     try:
-        found = parse()
+        tree = parse()
     # ValueError: among them UnicodeDecodeError, JSONDecodeError, TOMLDecodeError, too many digits
     except (msgspec.MsgspecError, ValueError, OverflowError) as error:
         raise MalformedError(str(error)[:_LONGEST_REASON]) from None
     except RecursionError:
         raise MalformedError("nested too deeply") from None
-    _check_nesting(found)
-    return found
+    _check_nesting(tree)
+    return tree
 
 
 def _check_nesting(tree: object) -> None:
     """Level by level, without recursion. Raises MalformedError."""
     level = [tree]
     for _ in range(MOST_NESTED):
-        level = [item for one in level for item in _items(one) if isinstance(item, dict | list)]
+        level = [item for node in level for item in _items(node) if isinstance(item, dict | list)]
         if not level:
             return
     raise MalformedError(f"nested more than {MOST_NESTED} levels deep")

@@ -1,6 +1,6 @@
-"""The chunks of a PNG file, walked within limits, and the file made anew from those that make up the picture.
+"""Parses the chunks of a PNG file within limits, and rebuilds the file from the necessary ones.
 
-libpng writes a line to stderr for each chunk that it finds odd (480,000 empty ones in 8 MB: 15.7 MB of log), and inflates
+libpng writes a line to stderr for each odd chunk (480,000 empty ones in 8 MB: 15.7 MB of log), and inflates
 whatever follows the picture's own data (4 MB: 5 s). So OpenCV gets IHDR, PLTE, tRNS, one IDAT and IEND, checked here.
 W3C PNG specification, third edition, sections 5, 8 and 11.
 """
@@ -45,12 +45,12 @@ class PngHeader:
 
 
 def is_png(data: memoryview) -> bool:
-    """By its first bytes."""
+    """True if the data has the signature of a PNG."""
     return data[: len(_PNG)] == _PNG
 
 
 def png_header(data: memoryview) -> PngHeader:
-    """What it says of itself. Raises MalformedError for what is no whole PNG, or has more chunks than one needs."""
+    """Parses the header. Raises MalformedError for an incomplete PNG or too many chunks."""
     header: PngHeader | None = None
     for name, content, _ in _chunks(data):
         if header is None:
@@ -61,26 +61,26 @@ def png_header(data: memoryview) -> PngHeader:
 
 
 def plain_png(data: memoryview, header: PngHeader) -> bytes:
-    """The same picture with nothing else in the file. Raises MalformedError for damage and for more data than it needs."""
-    kept: dict[bytes, memoryview] = {}
+    """The same picture without other chunks. Raises MalformedError for damage or excess data."""
+    chunks: dict[bytes, memoryview] = {}
     pixels: list[memoryview] = []
     for name, content, checksum in _chunks(data):
         if name == b"IDAT":
             pixels.append(content)
-        elif name in (b"IHDR", b"PLTE", b"tRNS") and name not in kept:
-            kept[name] = content
+        elif name in (b"IHDR", b"PLTE", b"tRNS") and name not in chunks:
+            chunks[name] = content
         else:
             continue
         if zlib.crc32(content, zlib.crc32(name)) != checksum:
             raise MalformedError("is damaged")
     _check_pixels(pixels, _raw_bytes(header))
-    parts = [_PNG, _chunk(b"IHDR", kept[b"IHDR"])]
+    parts = [_PNG, _chunk(b"IHDR", chunks[b"IHDR"])]
     if header.colour == _PALETTE:
-        parts.append(_chunk(b"PLTE", _palette(kept.get(b"PLTE", memoryview(b"")), header.bits)))
-    transparent = kept.get(b"tRNS")
+        parts.append(_chunk(b"PLTE", _palette(chunks.get(b"PLTE", memoryview(b"")), header.bits)))
+    transparent = chunks.get(b"tRNS")
     low, high = _TRANSPARENT_BYTES.get(header.colour, (1, 0))
     if transparent is not None and low <= len(transparent) <= high:
-        most = len(kept[b"PLTE"]) // 3 if header.colour == _PALETTE else high
+        most = len(chunks[b"PLTE"]) // 3 if header.colour == _PALETTE else high
         parts.append(_chunk(b"tRNS", transparent[:most]))
     parts += [_chunk(b"IDAT", b"".join(pixels)), _chunk(b"IEND", b"")]
     return b"".join(parts)
@@ -104,7 +104,7 @@ def _chunks(data: memoryview) -> Iterator[tuple[bytes, memoryview, int]]:
         else:
             others += 1
         if others > MOST_CHUNKS or pixels > MOST_DATA_CHUNKS:
-            raise MalformedError(f"has more than {MOST_CHUNKS} chunks beside its picture")
+            raise MalformedError(f"has more than {MOST_CHUNKS} chunks besides its picture")
         yield name, data[at + 8 : end], int.from_bytes(data[end : end + 4], "big")
         if name == b"IEND":
             return
@@ -125,7 +125,7 @@ def _header(name: bytes, content: memoryview) -> PngHeader:
 
 
 def _raw_bytes(header: PngHeader) -> int:
-    """How many bytes its pixels are, inflated, with the byte before each row that says its filter."""
+    """Size of the inflated pixels, with the filter byte of each row [bytes]."""
     samples = 1 if header.colour == _PALETTE else header.channels
     width, height = header.size_px
 
@@ -141,7 +141,7 @@ def _raw_bytes(header: PngHeader) -> int:
 
 
 def _check_pixels(pixels: list[memoryview], raw_bytes: int) -> None:
-    """Whether they inflate to so many bytes, found out without keeping them. Raises MalformedError."""
+    """Checks that they inflate to `raw_bytes` bytes, in constant memory. Raises MalformedError."""
     if raw_bytes > MOST_RAW_BYTES:
         raise MalformedError(
             f"takes {raw_bytes / 1e6:.0f} MB, at most {MOST_RAW_BYTES / 1e6:.0f} MB are read"
@@ -154,7 +154,7 @@ def _check_pixels(pixels: list[memoryview], raw_bytes: int) -> None:
                 size += len(inflater.decompress(rest, _STEP_BYTES))
                 rest = inflater.unconsumed_tail
         if size <= raw_bytes:
-            size += len(inflater.flush())  # what is left of the last copy: its input is consumed
+            size += len(inflater.flush())  # the rest of the output, as the input is consumed
     except zlib.error:
         raise MalformedError("is damaged") from None
     if size != raw_bytes or not inflater.eof:

@@ -1,18 +1,18 @@
-"""Files that hold secrets: who may read them, and the command that narrows it to those who must."""
+"""Permissions of files with secrets: their readers, and the command that restricts them."""
 
 import grp
 import os
 import stat
 from pathlib import Path
 
-# of the users that the units run as, who are alone in them
+# private groups of the services' users
 SERVICE_GROUPS = ("mocapd", "mocapd-node")
 SERVICE_FOLDER = Path("/etc/mocapd")
 _NODE_CONFIG = "camera-node.toml"
 
 
 def readers_of(path: Path) -> str:
-    """Who may read the file besides its owner and, by its group, a service of ours; empty for nobody, or no file."""
+    """The readers of the file besides its owner and our services' groups; empty without any, or without a file."""
     try:
         state = path.stat()
     except (OSError, ValueError):
@@ -25,7 +25,7 @@ def readers_of(path: Path) -> str:
 
 
 def narrowing(path: Path) -> str:
-    """The command after which its owner alone may read it, or a service's group where a service must."""
+    """The command that restricts reading to its owner, or to the group of the service that needs it."""
     try:
         is_ours = path.stat().st_uid == os.geteuid()
     except (OSError, ValueError):

@@ -1,4 +1,4 @@
-"""Addresses that somebody wrote: taken apart without surprises, and shown without their secrets."""
+"""Parses user-written addresses, and hides their secrets."""
 
 import re
 from urllib.parse import SplitResult, urlsplit
@@ -21,7 +21,7 @@ def split_url(text: str) -> SplitResult:
         parts = urlsplit(text)
         _ = parts.port  # also when it is no number
     except ValueError as error:
-        # the parser's own words repeat what it could not read
+        # the parser's message may repeat the password
         why = "" if has_password(text) else f": {error}"
         raise ConfigError(
             f"{without_password(text)!r} is no address{why}",
@@ -31,36 +31,36 @@ def split_url(text: str) -> SplitResult:
 
 
 def without_password(text: str) -> str:
-    """An address as it may be shown, logged and sent; any other text as it is.
+    """An address without secrets, for display, logs and messages; any other text unchanged.
 
-    A password ends at the last `@`, whatever it holds: people write `/`, `#` and `?` in it unescaped.
-    Hidden are also values of the query that are named as secrets, as many network cameras want them.
+    A password extends to the last `@`, as users write `/`, `#` and `?` in it unescaped. Also hides query parameters with
+    the names of secrets, which many network cameras use.
     """
-    found = _CREDENTIALS.match(text)
-    if found and _SECRET_QUERY.search(found[2]):
-        return f"{found[1]}{HIDDEN}"  # the `@` may be of either secret
-    if found:
-        user, colon, _ = found[2].partition(":")
+    match = _CREDENTIALS.match(text)
+    if match and _SECRET_QUERY.search(match[2]):
+        return f"{match[1]}{HIDDEN}"  # the `@` may be of either secret
+    if match:
+        user, colon, _ = match[2].partition(":")
         shown = f"{user}:{HIDDEN}" if colon else user
-        text = f"{found[1]}{shown}@{text[found.end() :]}"
+        text = f"{match[1]}{shown}@{text[match.end() :]}"
     return _SECRET_QUERY.sub(rf"\g<1>{HIDDEN}", text) if "://" in text else text
 
 
 def is_masked(text: str) -> bool:
-    """Whether its password is hidden, so that nothing can be reached by it."""
+    """True if the password is masked, so that the address is unusable."""
     return any(f"{before}{HIDDEN}" in text for before in ("://", ":", "=")) and "://" in text
 
 
 def without_passwords(text: str) -> str:
-    """A text in which addresses may stand, such as an error's, as it may be shown and sent.
+    """Hides the secrets of all addresses in a text, such as an error message.
 
-    One that begins with an address is taken for an address as a whole: a password may have spaces.
+    A text that begins with an address counts as one address, as a password may have spaces.
     """
     if _ADDRESS.match(text):
         return without_password(text)
-    return _ADDRESS.sub(lambda found: without_password(found[0]), text)
+    return _ADDRESS.sub(lambda match: without_password(match[0]), text)
 
 
 def has_password(text: str) -> bool:
-    """Whether showing it would show a secret."""
+    """True if the text holds a secret."""
     return without_password(text) != text

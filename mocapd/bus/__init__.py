@@ -1,1 +1,1 @@
-"""Zenoh for whoever opens a session: what a client needs, limits, calls at the end of the process."""
+"""Common code of Zenoh sessions: client configuration, limits, safe calls at the end of the process."""

@@ -1,7 +1,7 @@
-"""Answers to a question on the bus, measured before they are kept.
+"""Collects answers to a query on the bus, within limits of number and size.
 
-Zenoh's own handler of `get` queues whatever comes until the time is over: 200 answers of 7 MiB to one question took
-1.4 GB. Anybody whom the key's access control lets answer may send them.
+Zenoh's own handler of `get` queues all answers until the timeout: 200 answers of 7 MiB to one query took 1.4 GB. Every
+client with permission for the key can send them.
 """
 
 import threading
@@ -10,35 +10,35 @@ from typing import Any
 import zenoh
 
 MOST_ANSWERS = 1000
-MOST_ANSWERS_BYTES = 1_000_000  # of one question, together
-_SPARE_S = 1.0  # Zenoh ends a question after its time-out by itself
+MOST_ANSWERS_BYTES = 1_000_000  # of all answers to one query
+_SPARE_S = 1.0  # margin, as Zenoh ends a query after its timeout itself
 
 
 def limited_answers(
     session: zenoh.Session, key: str, timeout_s: float, most_bytes: int, **options: Any
 ) -> list[zenoh.Sample]:
-    """The answers to `key` that have at most `most_bytes` each, while they are within the limits above.
+    """The answers to `key` with at most `most_bytes` each, within the limits above.
 
-    Others are dropped. timeout_s: how long to wait for all who take the key; options: as of `session.get`.
+    Other answers are dropped. timeout_s: of the query; options: of `session.get`.
     Raises zenoh.ZError.
     """
-    kept: list[zenoh.Sample] = []
+    answers: list[zenoh.Sample] = []
     left_bytes = MOST_ANSWERS_BYTES
     over = threading.Event()
 
-    def came(reply: zenoh.Reply) -> None:  # on Zenoh's threads, one after the other
+    def on_reply(reply: zenoh.Reply) -> None:  # on Zenoh's threads, sequentially
         nonlocal left_bytes
         sample = reply.ok
         if sample is None or over.is_set():
             return
         size = len(sample.payload)
-        if size <= min(most_bytes, left_bytes) and len(kept) < MOST_ANSWERS:
+        if size <= min(most_bytes, left_bytes) and len(answers) < MOST_ANSWERS:
             left_bytes -= size
-            kept.append(sample)
+            answers.append(sample)
 
-    # on Zenoh's own thread: the Python thread it would else start hinders the interpreter's exit
-    handler = zenoh.handlers.Callback(came, over.set, indirect=False)
+    # indirect=False: Zenoh would start a Python thread that blocks the interpreter's exit
+    handler = zenoh.handlers.Callback(on_reply, over.set, indirect=False)
     session.get(key, handler, timeout=timeout_s, **options)
     over.wait(timeout_s + _SPARE_S)
     over.set()
-    return kept
+    return answers

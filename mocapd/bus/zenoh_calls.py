@@ -1,7 +1,7 @@
-"""Calls into Zenoh that the interpreter's exit waits for: a thread that came back later would abort it.
+"""Makes the interpreter's exit wait for calls into Zenoh: a thread that returns later would abort the process.
 
-The end of a session's or subscriber's object is such a call too: Zenoh lets go of the interpreter meanwhile. So they are
-held here, and let go of within the next call that opens one, or by the main thread as the last of all.
+The destruction of a session or subscriber is such a call too, as Zenoh releases the GIL in it. So this module holds
+references, and drops them within the next call that opens a session, or in the main thread at exit.
 """
 
 import atexit
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import zenoh
 
-_LONGEST_S = 5.0  # that the exit waits; what is called takes less once its session is closed
+_LONGEST_S = 5.0  # longest wait at exit; calls end sooner once their session is closed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,7 +26,7 @@ class _Held:
         return self.is_open() or (self.owner is not None and self.owner() is not None)
 
     def is_open(self) -> bool:
-        """Also while another thread is closing it."""
+        """True also while another thread closes it."""
         try:
             return not self.session.is_closed()
         except RuntimeError:  # "Already mutably borrowed": by the call that closes it
@@ -34,7 +34,7 @@ class _Held:
 
 
 class _Calls:
-    """Those under way, in all threads."""
+    """The calls in progress, in all threads."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -42,8 +42,8 @@ class _Calls:
         self._held: list[_Held] = []
 
     @contextmanager
-    def one(self) -> Iterator[None]:
-        """Around a call. While the interpreter exits only the main thread gets that far."""
+    def call(self) -> Iterator[None]:
+        """Context of a call. During the exit it blocks all but the main thread."""
         with self._changed:
             self._changed.wait_for(self._may_begin)
             self._under_way += 1
@@ -55,23 +55,24 @@ class _Calls:
                 self._changed.notify_all()
 
     def hold(self, session: zenoh.Session, *others: object, owner: object | None = None) -> None:
-        """A session that was opened, and what was declared in it, for as long as it is open or the owner lives.
-        To be called within a call."""
+        """Holds a session and its declarations while it is open or the owner lives.
+
+        Call it within `call`."""
         held = _Held(session, others, None if owner is None else weakref.ref(owner))
         with self._changed:
-            self._held = [one for one in self._held if one.is_needed()] + [held]
+            self._held = [h for h in self._held if h.is_needed()] + [held]
 
     def end(self) -> None:
-        """Wait for those under way, and close what they left open."""
+        """Waits for calls in progress, then closes the open sessions."""
         with self._changed:
             self._over = True
             self._changed.wait_for(lambda: self._under_way == 0, _LONGEST_S)
-        for one in self._held:
-            if one.is_open():
+        for held in self._held:
+            if held.is_open():
                 with (
                     suppress(RuntimeError),
-                    one.session,
-                ):  # which closes it, unless another thread does
+                    held.session,
+                ):  # closes it, unless another thread does
                     pass
 
     def _may_begin(self) -> bool:
@@ -79,7 +80,6 @@ class _Calls:
 
 
 _CALLS = _Calls()
-atexit.register(_CALLS.end)  # before any session is open, so that it comes after their closing
-
-zenoh_call = _CALLS.one
+atexit.register(_CALLS.end)  # before any session opens, so that it runs after their closing
+zenoh_call = _CALLS.call
 hold_session = _CALLS.hold

@@ -1,4 +1,4 @@
-"""The end of a Zenoh session, whatever those who are connected do."""
+"""Closes a Zenoh session within a time limit, whatever its peers do."""
 
 import logging
 import threading
@@ -12,12 +12,12 @@ _log = logging.getLogger(__name__)
 
 
 def close_soon(opened: ExitStack, wait_s: float = CLOSE_S) -> None:
-    """Close what was opened, and wait for it no longer than that [s].
+    """Closes the session in a thread, and waits at most `wait_s` [s].
 
-    A program that is connected and does not read, such as a game in a debugger, holds Zenoh up for
-    10 s. Meanwhile the port is free already; the connections end with the process or those 10 s.
+    A connected program that does not read, such as a game in a debugger, delays Zenoh for 10 s. The port is free
+    already; the connections end after the 10 s or with the process.
     """
-    # no daemon thread: one that comes back from Zenoh while the interpreter ends aborts the process
+    # no daemon thread: its return from Zenoh during the interpreter's exit would abort the process
     closing = threading.Thread(target=_close, args=(opened.pop_all(),), name="zenoh-close")
     closing.start()
     closing.join(wait_s)
@@ -29,5 +29,5 @@ def _close(opened: ExitStack) -> None:
     try:
         opened.close()
     except zenoh.ZError as error:
-        # past the sentence itself Zenoh appends the place in its own source
-        _log.info("not everybody on Zenoh took the end: %s", str(error).partition(" at /")[0])
+        # Zenoh appends its source location
+        _log.info("a peer on Zenoh did not accept the close: %s", str(error).partition(" at /")[0])

@@ -1,7 +1,6 @@
-"""What others may take of a Zenoh session that they can reach: bytes, connections, time and threads.
+"""Limits of a Zenoh session for its peers: bytes, connections, time and threads.
 
-Zenoh's own limits are those of a network of machines that trust each other. Whoever reaches the
-port of this session may be a game that hangs, or no game at all.
+Zenoh's defaults suit a network of trusted machines. A peer of this session may be a hanging game, or an attacker.
 """
 
 import os
@@ -30,12 +29,12 @@ RUNTIME = f"(rx: (worker_threads: {RX_THREADS}))"
 # Zenoh reads it when the first session of the process opens. What the user has set is left alone.
 os.environ.setdefault(RUNTIME_VARIABLE, RUNTIME)
 
-# Taking leave of everybody takes some milliseconds, but 10 s when a single one does not read.
+# Closing takes some milliseconds, but 10 s if a single peer does not read.
 CLOSE_S = 0.7
 
 
 def unicast_limits() -> dict[str, Any]:
-    """What goes into Zenoh's configuration below `transport/unicast`."""
+    """The part `transport/unicast` of Zenoh's configuration."""
     return {
         "max_sessions": MAX_SESSIONS,
         "accept_pending": ACCEPT_PENDING,
@@ -44,5 +43,5 @@ def unicast_limits() -> dict[str, Any]:
 
 
 def receive_limits() -> dict[str, Any]:
-    """What goes into Zenoh's configuration below `transport/link/rx`."""
+    """The part `transport/link/rx` of Zenoh's configuration."""
     return {"max_message_size": MAX_MESSAGE_BYTES}

@@ -28,7 +28,7 @@ from mocapd.calibration.saved_sources import (
 from mocapd.calibration.toml_text import toml_text
 from mocapd.errors import CannotCreateError, InputError, MocapdError, NewerFileError
 from mocapd.output_file import FileKind
-from mocapd.set_aside import set_aside
+from mocapd.quarantine import quarantine
 from mocapd.types import Bytes, LabelledPicture
 from mocapd.whole_file import tidy, whole_file
 
@@ -136,7 +136,7 @@ def _keep_before(path: Path) -> dict[tuple[str, str], str]:
     try:
         saved = read_tables(path)
     except MocapdError as error:
-        quarantined = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
+        quarantined = quarantine(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
         _log.warning("%s cannot be used (%s), and is now %s", path, error.what, quarantined.name)
         return {}
     passwords = dict(passwords_of(saved))

@@ -16,7 +16,7 @@ class Source(Protocol):
     recorded: bool
 
     def open(self) -> None:
-        """Get ready to read. Raises UnavailableError, PermissionDeniedError or InputError."""
+        """Prepares reading. Raises UnavailableError, PermissionDeniedError or InputError."""
         ...
 
     def read(self) -> Frame:
@@ -24,51 +24,51 @@ class Source(Protocol):
         ...
 
     def close(self) -> None:
-        """Let go of the camera; may be called twice, and when open failed. An `open` that is still going on gives up
-        what it got; a `read` that comes back later than the next `open` touches nothing of that."""
+        """Releases the camera; idempotent, and valid after a failed `open`. A concurrent `open` releases its device again;
+        a stale `read` that returns after the next `open` does not affect the new device."""
         ...
 
 
 @runtime_checkable
 class CountsTorn(Protocol):
-    """A source that leaves out damaged frames and counts them."""
+    """A source that drops damaged frames and counts them."""
 
     torn: int
 
 
 @runtime_checkable
 class Notices(Protocol):
-    """A source that knows what is wrong with its pictures beyond what they show."""
+    """A source that reports trouble which the pictures themselves do not show."""
 
     @property
     def notice(self) -> str:
-        """One line for people, the same while the trouble is; empty when there is none. By the thread that reads."""
+        """One line for users, constant while the trouble lasts; empty without trouble. Call from the reading thread."""
         ...
 
 
 @runtime_checkable
-class LookedAfter(Protocol):
-    """A source whose camera somebody else opens again, and leaves out when that does not help: what fails there is
-    counted there alone."""
+class NodeManaged(Protocol):
+    """A source whose camera a camera node reopens and quarantines: failures of the camera itself count at the node
+    only."""
 
     camera_failed: bool
-    """Whether the last loss was of that kind, and not one of the way to it. Read by the thread that reads."""
+    """True if the last loss was a failure of the camera, not of the network. Read from the reading thread."""
 
 
 @runtime_checkable
 class Pluggable(Protocol):
-    """A source whose camera has a plug. From any thread, quickly, without opening it."""
+    """A source whose camera can be unplugged. Thread-safe, fast, does not open the camera."""
 
     def plugging(self) -> str:
-        """Another word after each plugging in; empty while it is not there, or not known among others."""
+        """An id that changes with each plugging in; empty while the camera is absent or ambiguous."""
         ...
 
     @property
     def identity(self) -> WebcamIdentity | None:
-        """What it is sought by; None for one that is sought by its node. Raises InputError or ConfigError."""
+        """The USB identity; None for a camera addressed by its node. Raises InputError or ConfigError."""
         ...
 
     @property
     def place(self) -> str:
-        """Where it was found when it was opened, for people; empty where it was expected."""
+        """The camera's location at the last `open`, for users; empty at the expected location."""
         ...

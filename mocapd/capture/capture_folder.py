@@ -21,7 +21,7 @@ from mocapd.types import Frame, FrameSet, Rig
 
 _LOG = logging.getLogger(__name__)
 _MOST_OFFSET_S = 86_400.0  # of a camera's clock from the others'
-_TIMED_FRAMES = 900  # by whose stamps a file's rate is known
+_TIMED_FRAMES = 900  # their stamps give a file's rate
 _SAME_RATE = 0.005  # of a rate: 29.97 and 30 are one to people
 STATURES_M = (0.5, 2.6)
 
@@ -29,9 +29,9 @@ STATURES_M = (0.5, 2.6)
 @dataclass(frozen=True, slots=True)
 class RecordedCamera:
     """Frame f is exposed at f / fps_hz + time_offset_s [s], or, where the rate varies (`stamped`), at the file's stamp since
-    its first frame, + time_offset_s. start_s: the file's stamp of its first frame. `scribble`: an image with strokes beside
-    it; None when there is none. lost: first and last frame, exclusive, of each time it was unplugged, which its
-    video only fills."""
+    its first frame, + time_offset_s. start_s: the file's stamp of its first frame. `scribble`: an image with strokes in
+    a second file; None without. lost: frame ranges, end exclusive, in which the camera was unplugged and its video
+    holds filler frames."""
 
     name: str
     video: Path
@@ -45,7 +45,7 @@ class RecordedCamera:
     start_s: float = 0.0
 
     def has(self, frame: int) -> bool:
-        """Whether the camera was there for a frame."""
+        """True if the camera was plugged in at that frame."""
         return not any(first <= frame < last for first, last in self.lost)
 
 
@@ -53,7 +53,7 @@ class RecordedCamera:
 class CaptureFolder:
     """A recorded session; `cameras` in the rig's order. `stature_m` is None where no subject is given.
 
-    `model`: images of the shirt in neutral light with strokes beside them, for the offline colour model.
+    `model`: images of the shirt in neutral light with stroke files, for the offline colour model.
     """
 
     path: Path
@@ -85,14 +85,14 @@ def load_folder(path: Path) -> CaptureFolder:
         _camera(path, entry, camera.size_px)
         for entry, camera in zip(entries, rig.cameras, strict=True)
     )
-    cameras = _begun(cameras)
+    cameras = _apply_start_times(cameras)
     return CaptureFolder(
         path, rig, cameras, _stature_m(path / "subject.json"), _model(path / "model")
     )
 
 
 def _require_videos(folder: Path, entries: list[dict[str, Any]]) -> None:
-    """Raises InputError naming every camera whose video is missing, and the videos that are of no camera."""
+    """Raises InputError that names each camera without a video, and each video without a camera."""
     videos = {entry["name"]: _video_name(folder, entry) for entry in entries}
     missing = [
         f"{file} of camera {name!r}" for name, file in videos.items() if not is_file(folder / file)
@@ -101,9 +101,9 @@ def _require_videos(folder: Path, entries: list[dict[str, Any]]) -> None:
         return
     kinds = {Path(file).suffix.lower() for file in videos.values()}
     others = [
-        one.name
-        for one in shown_in(folder)
-        if one.suffix.lower() in kinds and one.name not in videos.values()
+        file.name
+        for file in shown_in(folder)
+        if file.suffix.lower() in kinds and file.name not in videos.values()
     ]
     of_none = f"; {', '.join(others)[:200]} is of no camera" if others else ""
     raise InputError(
@@ -123,15 +123,15 @@ def _video_name(folder: Path, entry: dict[str, Any]) -> str:
     return file
 
 
-def _begun(cameras: tuple[RecordedCamera, ...]) -> tuple[RecordedCamera, ...]:
-    """With the files' own times of their first frames: where an audio track begins earlier, or a file was cut at a
-    common instant, the first frames are not of one moment."""
+def _apply_start_times(cameras: tuple[RecordedCamera, ...]) -> tuple[RecordedCamera, ...]:
+    """Adds the files' start times to the offsets: first frames differ in time where an audio track begins earlier, or
+    where files were cut at a common instant."""
     first_s = min(camera.start_s for camera in cameras)
     return tuple(
-        replace(one, time_offset_s=one.time_offset_s + one.start_s - first_s)
-        if one.start_s > first_s
-        else one
-        for one in cameras
+        replace(camera, time_offset_s=camera.time_offset_s + camera.start_s - first_s)
+        if camera.start_s > first_s
+        else camera
+        for camera in cameras
     )
 
 
@@ -170,7 +170,7 @@ def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> Re
         fps_hz=stated_hz if times.unknown else times.rate_hz,
         time_offset_s=_number(offset_s, "time_offset_s", -_MOST_OFFSET_S, _MOST_OFFSET_S, where),
         frames=info.frames,
-        scribble=_stroked(folder / "scribble" / f"{Path(file).stem}.png"),
+        scribble=_image_with_strokes(folder / "scribble" / f"{Path(file).stem}.png"),
         lost=_lost(entry.get("lost_frames", []), info.frames, where),
         stamped=not times.is_constant,
         start_s=times.start_s,
@@ -178,13 +178,13 @@ def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> Re
 
 
 def _lost(value: object, frames: int, where: str) -> tuple[tuple[int, int], ...]:
-    """Pairs of frames of a video of so many."""
+    """Checked frame ranges of a video with `frames` frames."""
     spans: list[Any] = value if isinstance(value, list) else [value]
     if not all(isinstance(span, list) and len(span) == 2 for span in spans):
         raise ConfigError(
             f"'lost_frames' must be pairs of frames, is {brief(value)}", where, "correct the file"
         )
-    pairs = ([int(_number(one, "lost_frames", 0, frames, where)) for one in span] for span in spans)
+    pairs = ([int(_number(n, "lost_frames", 0, frames, where)) for n in span] for span in spans)
     return tuple((first, last) for first, last in pairs)
 
 
@@ -201,8 +201,8 @@ def _stature_m(path: Path) -> float | None:
         raise ConfigError(f"'stature_m': {error.what}", str(path), fix) from None
 
 
-def _stroked(image: Path) -> Path | None:
-    """The image that has strokes beside it; None without an image. Raises InputError for one alone."""
+def _image_with_strokes(image: Path) -> Path | None:
+    """The image; None without one. Raises InputError for an image without a stroke file."""
     if is_absent(image):
         return None
     strokes = strokes_beside(image)
@@ -212,14 +212,14 @@ def _stroked(image: Path) -> Path | None:
 
 
 def _model(folder: Path) -> tuple[Path, ...]:
-    images = (_stroked(image) for image in stroked_pictures(folder))
+    images = (_image_with_strokes(image) for image in stroked_pictures(folder))
     return tuple(image for image in images if image is not None)
 
 
 def folder_source(camera: RecordedCamera, pace: Pace, name: str | None = None) -> FileSource:
-    """The source of one camera, under its own name if no other is given.
+    """The source of one camera; `name` overrides the camera's own.
 
-    A live `pace` is shared by the cameras of a folder, so that they stay in step.
+    The cameras of a folder share a live `pace`, so that they stay synchronised.
     """
     return FileSource(
         name or camera.name,
@@ -233,16 +233,19 @@ def folder_source(camera: RecordedCamera, pace: Pace, name: str | None = None) -
 
 
 def frame_sets(folder: CaptureFolder) -> Iterator[FrameSet]:
-    """The frames of every camera that are nearest in time, from time 0, as fast as they decode.
+    """Sets of frames nearest in time, from time 0, as fast as they decode.
 
-    Each frame carries its own time; a camera that ended early, was unplugged then, or has no frame so near, is absent.
+    Each frame carries its own time. A camera without a frame within half a period is absent, as one that ended or was
+    unplugged.
     """
     pace = Pace(live=False)
     cameras = {camera.name: camera for camera in folder.cameras}
-    for found in sources_in_step([folder_source(camera, pace) for camera in folder.cameras]):
-        there = {name: one for name, one in found.frames.items() if cameras[name].has(one.seq)}
-        if there:
-            yield as_set(there)
+    for frames in sources_in_step([folder_source(camera, pace) for camera in folder.cameras]):
+        present = {
+            name: frame for name, frame in frames.frames.items() if cameras[name].has(frame.seq)
+        }
+        if present:
+            yield as_set(present)
 
 
 def sources_in_step(sources: Sequence[FileSource]) -> Iterator[FrameSet]:
@@ -268,6 +271,6 @@ def sources_in_step(sources: Sequence[FileSource]) -> Iterator[FrameSet]:
                         _LOG.warning("%s", end)
             if not ahead:
                 return
-            present = {one.name: ahead[one.name] for one in sources if one.name in ahead}
-            apart_ns = half_period_ns(max(one.fps_hz for one in sources))
+            present = {s.name: ahead[s.name] for s in sources if s.name in ahead}
+            apart_ns = half_period_ns(max(source.fps_hz for source in sources))
             yield as_set({name: ahead.pop(name) for name in due_frames(present, apart_ns)})

@@ -1,8 +1,8 @@
-"""What the picture decoders write to C's stderr, as a line of the log now and then.
+"""Rate-limited log lines in place of what picture decoders write to C's stderr.
 
-libjpeg writes a line for each damaged picture, so that a camera could fill the disk at its rate. Whoever decodes a
-picture cannot ask it not to. So C's stream `stderr` is put on a pipe: the interpreter's own stderr, and what Rust and
-faulthandler write to file descriptor 2, stay as they are.
+libjpeg writes a line for each damaged picture, so one camera could fill the disk, and OpenCV cannot silence it. So C's
+stream `stderr` is redirected to a pipe. The interpreter's own stderr, and what Rust and faulthandler write to file
+descriptor 2, are unaffected.
 """
 
 import ctypes
@@ -27,8 +27,7 @@ _UNBUFFERED = 2  # _IONBF of stdio.h
 
 
 class DecoderWarnings:
-    """From `__enter__` to `__exit__`, with a thread of its own. Does nothing where C's library is not glibc, whose
-    `stderr` is a variable."""
+    """Context manager with a thread of its own. Does nothing without glibc, where `stderr` is no variable."""
 
     def __init__(self, pause_s: float = PAUSE_S) -> None:
         self._pause_s = pause_s
@@ -66,11 +65,11 @@ class DecoderWarnings:
         self._thread.join(_LAST_LINE_S)
 
     def _run(self) -> None:
-        told_s, left_out = float("-inf"), 0
+        logged_s, left_out = float("-inf"), 0
         while data := os.read(self._read_fd, _READ_BYTES):
             lines = data.rstrip(_END).splitlines()
-            if lines and time.monotonic() - told_s >= self._pause_s:
-                told_s = time.monotonic()
+            if lines and time.monotonic() - logged_s >= self._pause_s:
+                logged_s = time.monotonic()
                 more = left_out + len(lines) - 1
                 counted = f" ({more} more like it were left out)" if more else ""
                 text = one_line(lines[0].decode(errors="replace"))[:_LONGEST]

@@ -19,5 +19,5 @@ os.environ.setdefault(STALL_TIMEOUT_VARIABLE, "1")
 os.environ.setdefault("OPENCV_LOG_LEVEL", "ERROR")
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
 # What no picture file may exceed, whatever its header says [pixels]; OpenCV's own limit is 3 GB of them.
-# PNG and JPEG are measured by `boundary.pictures`; this holds for the other kinds of the user's files.
+# PNG and JPEG are measured by `boundary.image_decoding`; this holds for the other kinds of the user's files.
 os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", "40000000")

@@ -10,7 +10,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 import cv2
 
 from mocapd.boundary.files import is_file
-from mocapd.boundary.pictures import MOST_PIXELS
+from mocapd.boundary.image_decoding import MOST_PIXELS
 from mocapd.capture.guard import GuardedCapture
 from mocapd.capture.pace import Pace
 from mocapd.capture.pixels import frozen_pixels
@@ -20,9 +20,7 @@ from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, EndOfStream, InputError
 from mocapd.types import Frame
 
-_SKIPPING_NS = (
-    100_000_000  # in one read; who decodes more slowly than the film plays sees some of it
-)
+_SKIPPING_NS = 100_000_000  # in one read; bounds the skipping where decoding is slower than playing
 _MOST_MISSES = 60  # frames in a row that do not decode, before the file counts as ended
 _LONGEST_GAP_S = (
     60.0  # between two frames, as the file stamps them; a longer one is no gap but damage
@@ -35,7 +33,7 @@ SLOWEST_HZ, FASTEST_HZ = 0.01, 1000.0
 
 @dataclass(frozen=True, slots=True)
 class VideoInfo:
-    """What a video file says of itself; `frames` is 0 where the format does not tell."""
+    """The header of a video file; `frames` is 0 where the format has no count."""
 
     size_px: tuple[int, int]  # width, height
     fps_hz: float

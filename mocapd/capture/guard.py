@@ -1,9 +1,8 @@
-"""A cv2.VideoCapture that one thread reads and any thread may ask to close.
+"""A cv2.VideoCapture that one thread reads and any thread may close.
 
-Releasing a VideoCapture while another thread is inside `grab` crashes or blocks for as long as
-the grab does. Here `close` never waits: when a reader is inside, the reader releases on its way
-out. A capture that is opened while somebody closes, or that a stuck driver gives when nobody waits for it any
-more, is let go at once.
+Releasing a VideoCapture while another thread is inside `grab` crashes, or blocks as long as the grab. So `close` never
+waits: a reader that is inside releases the capture when it leaves. A capture whose opening was closed or superseded
+meanwhile is released at once.
 """
 
 import threading
@@ -27,7 +26,7 @@ class GuardedCapture:
         return self._closing
 
     def close(self) -> None:
-        """Release now, or as soon as the reader is out. Never blocks; may be called twice."""
+        """Releases the capture now, or when the reader leaves. Never blocks; idempotent."""
         self._closing = True
         self._release_if_free()
 
@@ -49,7 +48,7 @@ class GuardedCapture:
 
 
 class Openings:
-    """The opened capture of a source, of which the newest counts; from any thread."""
+    """The current capture of a source: the newest opening wins. Thread-safe."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()  # guards what follows
@@ -58,16 +57,16 @@ class Openings:
 
     @property
     def current(self) -> GuardedCapture | None:
-        """What is open; None before, and after `close`."""
+        """The open capture; None before an opening and after `close`."""
         return self._current
 
     def begin(self) -> int:
-        """An opening begins, and ends what was before it. Its number, for `take`."""
+        """Begins an opening and closes the previous one. Returns its number, for `take`."""
         self.close()
         return self._begun
 
     def take(self, number: int, capture: cv2.VideoCapture) -> bool:
-        """What that opening has got; False, and it is released, where that was closed meanwhile."""
+        """Installs the capture of an opening. Releases it and returns False if that opening was closed meanwhile."""
         with self._lock:
             if number == self._begun:
                 self._current = GuardedCapture(capture)
@@ -76,7 +75,7 @@ class Openings:
         return False
 
     def close(self) -> None:
-        """Never blocks; may be called twice."""
+        """Closes the current capture. Never blocks; idempotent."""
         with self._lock:
             self._begun += 1
             current, self._current = self._current, None

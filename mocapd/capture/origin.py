@@ -1,4 +1,4 @@
-"""Where several cameras are of: a recording or a scenario, which also knows how they stood and who was there."""
+"""The common origin of several cameras: a recording or a scenario, with its rig and its wearer."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -9,11 +9,11 @@ from mocapd.capture.base import Source
 from mocapd.capture.source_request import SourceRequest
 from mocapd.types import FrameSet, LabelledPicture, Rig
 
-Progress = Callable[[str, int, int], None]  # what is being made, parts done, parts in all
+Progress = Callable[[str, int, int], None]  # task, parts done, parts in all
 
 
 class Origin(Protocol):
-    """An origin that is open. `rig_source`: where its rig is from, for people; `count`: its frame sets."""
+    """An open origin. `rig_source`: file or scenario of its rig, for users; `count`: number of frame sets."""
 
     @property
     def rig(self) -> Rig: ...
@@ -27,28 +27,28 @@ class Origin(Protocol):
     def count(self) -> int: ...
 
     def model(self) -> tuple[LabelledPicture, ...]:
-        """The shirt in neutral light. Raises InputError or ConfigError."""
+        """Labelled pictures of the shirt in neutral light. Raises InputError or ConfigError."""
         ...
 
     def white_balance(self) -> Mapping[str, LabelledPicture]:
-        """By camera, the shirt in the place's own light. Raises InputError."""
+        """By camera, the shirt in the scene's light. Raises InputError."""
         ...
 
     def frame_sets(self) -> Iterator[FrameSet]:
-        """All of it once, from time 0, as fast as it decodes."""
+        """All frame sets once, from time 0, as fast as they decode."""
         ...
 
     def source(self, address: str, request: SourceRequest) -> Source:
-        """One of its cameras. Raises ConfigError for one that it has not."""
+        """One of its cameras. Raises ConfigError for an unknown one."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class OriginKind:
-    """What a kind of source knows of origins, whose names are addresses without a camera.
+    """The origins of a kind of source; an origin's name is an address without a camera.
 
-    cameras(origin): their names. open(origin, cache_dir, progress): it may be made first, and kept in the
-    cache. open_beginning: likewise, what can be had sooner, where that is another. All raise InputError or ConfigError.
+    cameras(origin): camera names. open(origin, cache_dir, progress): opens the origin, possibly rendering it into the
+    cache first. open_beginning: the same for a part that is ready sooner. All raise InputError or ConfigError.
     """
 
     cameras: Callable[[str], tuple[str, ...]]
@@ -57,11 +57,11 @@ class OriginKind:
 
 
 def camera_address(origin: str, camera: str) -> str:
-    """One camera of an origin."""
+    """The address of one camera of an origin."""
     return f"{origin}#{camera}"
 
 
 def split_address(address: str) -> tuple[str, str]:
-    """Origin and camera; the origin is empty for a camera by itself."""
+    """Origin and camera; the origin is empty for a camera without one."""
     origin, _, camera = address.rpartition("#")
     return origin, camera

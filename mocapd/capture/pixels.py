@@ -1,4 +1,4 @@
-"""What OpenCV hands out, as the pixels of a Frame, and the JPEG that they were decoded from."""
+"""Converts OpenCV's buffers to the pixels of a Frame and the JPEG that they were decoded from."""
 
 import numpy as np
 
@@ -17,8 +17,8 @@ def frozen_pixels(image: MatLike) -> Bytes:
 
 
 def delivered_jpeg(buffer: MatLike, pixels: Bytes) -> bytes | None:
-    """A camera's JPEG file beside the pixels decoded from it: the one copy that outlives the buffer.
+    """A copy of a camera's JPEG file, which outlives the driver's buffer.
 
-    None for one that takes more than its pixels: what such a file holds is no picture.
+    None for a file larger than its pixels: most of it is no picture.
     """
     return buffer.tobytes() if buffer.nbytes <= pixels.nbytes else None

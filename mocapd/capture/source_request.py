@@ -1,4 +1,4 @@
-"""What is asked of a source that is opened."""
+"""The parameters of opening a source."""
 
 from dataclasses import dataclass, field
 

@@ -4,7 +4,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
-from mocapd.boundary.pictures import MOST_PIXELS, decode_camera_picture
+from mocapd.boundary.image_decoding import MOST_PIXELS, decode_camera_picture
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import Openings
@@ -19,11 +19,10 @@ _MJPG = cv2.VideoWriter.fourcc(*"MJPG")
 
 
 class UrlSource:
-    """Frames are stamped on arrival: the network's delay is not known, so give wired cameras the preference.
+    """Frames are stamped on arrival, without the network's delay; so prefer wired cameras.
 
-    `size_px` (width, height), when given, must be what the camera sends. Motion JPEG is decoded here, for
-    the files are wanted as they come; `torn` counts those that were damaged and left out. Raises ConfigError
-    for what is no address. Whatever is told of it hides its password.
+    `size_px` (width, height), when given, must be what the camera sends. Motion JPEG is decoded here, as other parts use
+    the files; `torn` counts damaged ones. Messages hide the password. Raises ConfigError for an invalid address.
     """
 
     recorded = False
@@ -135,5 +134,5 @@ class UrlSource:
         raise CameraLost("the network camera stopped sending", self._shown, "check its network")
 
     def close(self) -> None:
-        """Let go; a blocked `read` ends after its timeout at the latest."""
+        """Closes the stream; a blocked `read` ends after its timeout at the latest."""
         self._openings.close()

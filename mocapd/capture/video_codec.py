@@ -1,7 +1,7 @@
-"""Which codec a video is of, and what to do about one that cannot be decoded here.
+"""Identifies the codec of a video, and how to convert one that cannot be decoded here.
 
-OpenCV's wheels decode by the FFmpeg that they carry, which has no decoder for AV1 but those of graphics cards. That a
-codec cannot be read shows as a stream that opens and yields no frame, as damage does: the codec tells them apart.
+OpenCV's wheels decode by the FFmpeg that they carry, which has no decoder for AV1 but those of graphics cards. An
+unsupported codec yields a stream without frames, as damage does; its code distinguishes the two.
 """
 
 import shlex
@@ -40,7 +40,7 @@ def undecodable_codec(capture: cv2.VideoCapture) -> str:
 
 
 def conversion(path: Path) -> str:
-    """How to make a video that can be read of one that cannot, with the times of its frames."""
+    """Advice for converting an unsupported video, with the times of its frames."""
     made = shlex.quote(f"{path.stem}-h264.mp4")
     return (
         "convert it to H.264 and put that in its place: "

@@ -1,6 +1,6 @@
-"""Whether a file is a container of video by its first bytes, before FFmpeg looks at it.
+"""Checks by its first bytes that a file is a video container, before FFmpeg opens it.
 
-FFmpeg guesses a format by content, and some formats are texts that name other files and addresses: a list
+FFmpeg guesses formats by content, and some formats are texts that name other files and addresses: a list
 `x.mp4` of concatenated films reads whatever it names, and waits for a pipe without end.
 """
 
@@ -41,7 +41,7 @@ _FIX = "give a video that a camera or a recorder wrote (MP4, MOV, MKV, WebM, AVI
 
 
 def require_video(path: Path) -> None:
-    """Raises InputError for what is no container of video, or cannot be read."""
+    """Raises InputError for a file that is no video container or cannot be read."""
     head = read_beginning(path, _HEAD_BYTES)
     if not head:
         raise InputError("the video is empty", str(path), "record it again")
@@ -62,7 +62,7 @@ def _is_container(head: bytes) -> bool:
 
 
 def _is_transport_stream(head: bytes, length: int) -> bool:
-    """Whether four packets of this length follow each other, of which the first begins within the first one's length."""
+    """True if four consecutive packets of this length begin within the first packet's length."""
     last = 3 * length
     return any(
         all(at + k < len(head) and head[at + k] == _SYNC for k in range(0, last + 1, length))

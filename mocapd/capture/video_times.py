@@ -64,8 +64,8 @@ def video_times(path: Path, most_frames: int | None = None) -> VideoTimes:
 
 
 def times_of_stamps(stamps_s: Floats, header_hz: float, start_s: float = 0.0) -> VideoTimes:
-    """What stamps (F,) [s] say, of a file whose header states a rate; `start_s` is the first one's own time."""
-    unknown = _unknown(stamps_s)
+    """Times from stamps (F,) [s] and the header's rate; `start_s` is the file's time of the first frame."""
+    unknown = _stamp_trouble(stamps_s)
     no_gaps = np.empty((0, 2), dtype=np.int_)
     if unknown:
         by_index: Floats = np.arange(len(stamps_s), dtype=np.float64) / header_hz
@@ -90,7 +90,7 @@ def times_of_stamps(stamps_s: Floats, header_hz: float, start_s: float = 0.0) ->
     return VideoTimes(times_s, 1.0 / period_s, gaps, is_constant, start_s)
 
 
-def _unknown(stamps_s: Floats) -> str:
+def _stamp_trouble(stamps_s: Floats) -> str:
     """Why stamps cannot be believed; empty when they can."""
     if not np.isfinite(stamps_s).all():
         return "the file's stamps are no numbers"

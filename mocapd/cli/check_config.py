@@ -34,7 +34,7 @@ def check_config(
     Example: mocapd check-config --changed
     """
     effective = effective_config(config, settings, cameras)
-    rows = [s for s in effective.settings if s.changed or not changed]
+    rows = [s for s in effective.settings if s.is_changed or not changed]
     if as_json:
         print(json.dumps({s.key.path: {"value": _plain(s.value), "from": s.origin} for s in rows}))
         return
@@ -73,9 +73,9 @@ def _print_calibration(config: "Config") -> None:
 
 
 def _print_table(rows: "list[Setting]") -> None:
-    from mocapd.config.config_keys import shown
+    from mocapd.config.config_keys import as_toml
 
-    cells = [(s.key.path, shown(s.value), s.origin) for s in rows]
+    cells = [(s.key.path, as_toml(s.value), s.origin) for s in rows]
     widths = [max((len(row[i]) for row in cells), default=0) for i in range(2)]
     for key, value, origin in cells:
         print(f"{key:<{widths[0]}} = {value:<{widths[1]}}  # {origin}")

@@ -84,13 +84,13 @@ def evaluate_captures(
     from mocapd.evaluate import runs, score_page
     from mocapd.evaluate.capture_eval import open_case
     from mocapd.evaluate.report import score_json, score_table
-    from mocapd.session.tracker_setup import cached, ready_tracker
+    from mocapd.session.tracker_setup import cache_resources, ready_tracker
 
     if out is not None:
         score_page.check_page(out, force)
     with ProgressBars() as progress:
         cases = [open_case(folder, compare=True) for folder in captures]
-        resources = cached(effective.cache_dir, progress)
+        resources = cache_resources(effective.cache_dir, progress)
         setting = runs.EvaluationSettings(
             lambda calibration: ready_tracker(name, calibration, resources),
             effective.tracker.stature_m,

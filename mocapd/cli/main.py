@@ -3,7 +3,7 @@
 import os
 import sys
 
-from mocapd.app.daemon.early_signals import SIGINT_EXIT, end_at_once, ended, interruptible
+from mocapd.app.daemon.early_signals import SIGINT_EXIT, end_at_once, ignore_signals, interruptible
 
 # The libraries read these during import. At our array sizes a thread pool costs more than it gains: we use one
 # thread per camera, and one thread in each library.
@@ -31,7 +31,7 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.exit(SIGINT_EXIT)
     finally:
-        ended()
+        ignore_signals()
 
 
 if __name__ == "__main__":

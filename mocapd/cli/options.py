@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
 def complete_setting(incomplete: str) -> list[str]:
     """Completions of --set: keys, and the values of a switch."""
-    from mocapd.config.effective import known_keys
+    from mocapd.config.effective import all_keys
 
     key, has_value, _ = incomplete.partition("=")
     if not has_value:
-        return [f"{name}=" for name in known_keys() if name.startswith(key)]
+        return [f"{name}=" for name in all_keys() if name.startswith(key)]
     return [f"{key}={value}" for value in ("true", "false") if _is_switch(key)]
 
 
 def _is_switch(key: str) -> bool:
-    from mocapd.config.effective import known_keys
+    from mocapd.config.effective import all_keys
 
-    entry = known_keys().get(key)
+    entry = all_keys().get(key)
     return entry is not None and isinstance(entry.default, bool)
 
 

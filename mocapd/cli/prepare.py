@@ -26,7 +26,7 @@ def prepare(config: ConfigOption = None, settings: SetOption = None) -> None:
     set_up_logs(effective.log_level)
     prepare_libraries(effective.cache_dir)
 
-    from mocapd.app.daemon.cache_warmup import prepare_apart
+    from mocapd.app.daemon.cache_warmup import prepare_in_processes
     from mocapd.app.daemon.first_start_tasks import has_tasks
     from mocapd.session.prepared_marker import is_prepared
 
@@ -36,7 +36,7 @@ def prepare(config: ConfigOption = None, settings: SetOption = None) -> None:
             "tracker.name",
             "start it, or prepare auto, shirt or markerless",
         )
-    prepare_apart(effective)
+    prepare_in_processes(effective)
     if not is_prepared(effective):
         raise UnavailableError(
             "not everything could be prepared",

@@ -18,9 +18,9 @@ def recenter(config: ConfigOption = None, settings: SetOption = None) -> None:
 
     Example: mocapd recenter
     """
-    from mocapd.control.meant import daemon_meant
+    from mocapd.control.target_process import target_daemon
 
-    report = daemon_meant(config_to_look_after(config, settings)[0].config).recenter()
+    report = target_daemon(config_to_look_after(config, settings)[0].config).recenter()
     side = "left" if report.yaw_deg >= 0.0 else "right"
     print(
         f"forward is {abs(report.yaw_deg):.0f} degrees to the {side} of the room's +Z;"

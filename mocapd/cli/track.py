@@ -90,7 +90,7 @@ def track(
         why_missing,
         write_track,
     )
-    from mocapd.session.tracker_setup import cached, ready_tracker
+    from mocapd.session.tracker_setup import cache_resources, ready_tracker
 
     read = (capture,) if calibration is None else (capture, calibration)
     target = track_file(out, force, inputs=read)
@@ -107,7 +107,7 @@ def track(
         ready = ready_tracker(
             own.name,
             setup.assuming(own.stature_m),
-            cached(effective.cache_dir, progress, own.tracking),
+            cache_resources(effective.cache_dir, progress, own.tracking),
         )
         if room is RoomSeen.WHOLE:
             learn_room(ready.tracker, checked.frame_sets(), origin.count)

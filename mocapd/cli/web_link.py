@@ -20,10 +20,10 @@ def web_link(config: ConfigOption = None, settings: SetOption = None) -> None:
     """
     from urllib.parse import urlsplit
 
-    from mocapd.app.setup.chosen_page import page_meant
+    from mocapd.app.setup.chosen_page import target_page
     from mocapd.web.games.frames_access import FramesAccess
 
-    daemon = page_meant(effective_config(config, settings).config)
+    daemon = target_page(effective_config(config, settings).config)
     if not daemon.status.origins:
         raise ConfigError(
             "the running mocapd allows no site",

@@ -1,4 +1,4 @@
-"""The keys of a tree of frozen dataclasses: their types, limits and defaults, read from the fields.
+"""Configuration keys of a tree of frozen dataclasses: types, limits and defaults, read from the fields.
 
 A section is a frozen dataclass; a field is a key, or another section, or a list of sections. Limits
 are `msgspec.Meta` in `Annotated`, or the section's own `__post_init__`. The words for the user are
@@ -22,7 +22,7 @@ from mocapd.boundary.parsing import convert
 from mocapd.boundary.urls import without_password
 from mocapd.errors import ConfigError, MalformedError
 
-COMMAND_LINE = "command line"  # the place of a value that an option gave
+COMMAND_LINE = "command line"  # the origin of an option's value
 _MOST_SECTIONS = 100  # of one list; a calibration has at most 100 cameras
 _LARGEST_BITS = 64  # of a whole number
 _LONGEST_SHOWN = 200  # characters of a value in an error
@@ -30,20 +30,20 @@ _LONGEST_SHOWN = 200  # characters of a value in an error
 
 @dataclass(frozen=True, slots=True)
 class SectionTable:
-    """Marks a field that holds sections by name, `Mapping[str, Any]`: what there is may be configured without
-    a line here. In a file they stand beside the field's section's own keys, not under the field's name."""
+    """Marks a field that holds sections by name, `Mapping[str, Any]`, for pluggable parts. In a file these sections are on
+    the level of the field, not under the field's name."""
 
     sections: Callable[[], Mapping[str, Any]]
 
     def built(self, values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-        """Every section of the table, from the values of keys by path."""
-        table = self.sections()
-        return {name: build(one, values, f"{prefix}{name}.") for name, one in table.items()}
+        """Builds every section of the table from the values of keys by path."""
+        table = self.sections().items()
+        return {name: build(section, values, f"{prefix}{name}.") for name, section in table}
 
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """One key. `default_text` replaces a default that differs from machine to machine."""
+    """One key. `default_text` replaces a machine-dependent default in the documentation."""
 
     path: str
     type: Any
@@ -53,7 +53,7 @@ class Key:
 
     @property
     def wants_text(self) -> bool:
-        """Whether a value in a flag or a variable is text and needs no quotes."""
+        """True if values of flags and variables are text and need no quotes."""
         bare = _bare(self.type)
         if get_origin(bare) is Literal:
             return all(isinstance(choice, str) for choice in get_args(bare))
@@ -61,7 +61,7 @@ class Key:
 
     @property
     def is_path(self) -> bool:
-        """Whether it is a path although its part keeps it as text, as the extra of its Meta says."""
+        """True for a path of type str, by the extra of its Meta."""
         return bool((_meta(self.type).extra or {}).get("is_path"))
 
 
@@ -73,8 +73,8 @@ def keys_of(section: Any, prefix: str = "") -> Iterator[Key]:
         annotation, path = hints[field.name], prefix + field.name
         table = _table(annotation)
         if table is not None:
-            for name, one in table.sections().items():
-                yield from keys_of(one, f"{prefix}{name}.")
+            for name, nested in table.sections().items():
+                yield from keys_of(nested, f"{prefix}{name}.")
             continue
         if is_dataclass(annotation):
             yield from keys_of(annotation, f"{path}.")
@@ -91,14 +91,14 @@ def keys_of(section: Any, prefix: str = "") -> Iterator[Key]:
 
 
 def entry_keys(key: Key) -> Iterator[Key]:
-    """For a key that is a list of sections, the keys of an entry, their paths after `[[key]]`."""
+    """The keys of an entry of a list of sections, with paths after `[[key]]`."""
     item = _item_section(key.type)
     if item is not None:
         yield from keys_of(item, f"[[{key.path}]] ")
 
 
 def build(section: Any, values: Mapping[str, Any], prefix: str = "") -> Any:
-    """The section from the values of its keys by path; what is absent keeps its default."""
+    """Builds a section from the values of its keys by path; absent keys have their defaults."""
     hints = get_type_hints(section, include_extras=True)
     chosen = {}
     for field in fields(section):
@@ -113,27 +113,27 @@ def build(section: Any, values: Mapping[str, Any], prefix: str = "") -> Any:
     return section(**chosen)
 
 
-def converted(annotation: Any, value: Any, path: str, where: Callable[[str], str]) -> Any:
-    """The value as the key's type. `where` tells the place of a key's path, such as `file:line`.
+def convert_value(annotation: Any, value: Any, path: str, where: Callable[[str], str]) -> Any:
+    """Converts a value to the key's type. `where` returns the origin of a key, such as `file:line`.
 
-    Raises ConfigError with place, path, value and what it may be.
+    Raises ConfigError with origin, path, value and permitted values.
     """
     item = _item_section(annotation)
     if item is not None:
-        return _converted_list(item, value, path, where)
+        return _convert_sections(item, value, path, where)
     try:
         check_numbers(value)
         return convert(value, annotation, dec_hook=_path)
     except MalformedError:
         raise ConfigError(
-            f"{path} = {shown(value)[:_LONGEST_SHOWN]} does not do",
+            f"{path} = {as_toml(value)[:_LONGEST_SHOWN]} does not do",
             where(path),
-            f"give {path} {described(annotation)}"
+            f"give {path} {describe_type(annotation)}"
             + _list_example(annotation, value, path, where(path)),
         ) from None
 
 
-def _converted_list(
+def _convert_sections(
     item: Any, value: Any, path: str, where: Callable[[str], str]
 ) -> tuple[Any, ...]:
     if not isinstance(value, list) or not all(isinstance(entry, dict) for entry in value):
@@ -144,21 +144,21 @@ def _converted_list(
         raise ConfigError(
             f"{path} has {len(value)} sections", where(path), f"give at most {_MOST_SECTIONS}"
         )
-    known = {key.path: key for key in keys_of(item)}
+    keys = {key.path: key for key in keys_of(item)}
     required = [f.name for f in fields(item) if f.default is f.default_factory is MISSING]
     out = []
     for i, entry in enumerate(value):
         here, flat = f"{path}[{i}]", dict(leaves(entry))
         for name in flat:
-            if name not in known:
-                raise unknown_key(f"{here}.{name}", name, known, where(f"{here}.{name}"))
+            if name not in keys:
+                raise unknown_key(f"{here}.{name}", name, keys, where(f"{here}.{name}"))
         for name in required:
             if name not in flat:
                 raise ConfigError(
                     f"{here} has no {name!r}", where(here), f'add {name} = "..." to that section'
                 )
         chosen = {
-            name: converted(known[name].type, raw, f"{here}.{name}", where)
+            name: convert_value(keys[name].type, raw, f"{here}.{name}", where)
             for name, raw in flat.items()
         }
         out.append(build(item, chosen))
@@ -166,7 +166,7 @@ def _converted_list(
 
 
 def leaves(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """(path, value) of everything that is not a table; lists of tables are values."""
+    """(path, value) of every leaf; lists of tables are leaves."""
     for name, value in data.items():
         if isinstance(value, dict):
             yield from leaves(value, f"{prefix}{name}.")
@@ -174,15 +174,15 @@ def leaves(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any
             yield prefix + name, value
 
 
-def unknown_key(path: str, name: str, known: Mapping[str, Any], where: str) -> ConfigError:
-    """The error of a key that does not exist, with the nearest one that does."""
-    near = difflib.get_close_matches(name[:_LONGEST_SHOWN], known, n=1, cutoff=0.5)
+def unknown_key(path: str, name: str, keys: Mapping[str, Any], where: str) -> ConfigError:
+    """The error of an unknown key, with the most similar valid one."""
+    near = difflib.get_close_matches(name[:_LONGEST_SHOWN], keys, n=1, cutoff=0.5)
     fix = f"did you mean {near[0]!r}?" if near else "`mocapd check-config` lists every key"
     return ConfigError(f"unknown key {path[:_LONGEST_SHOWN]!r}", where, fix)
 
 
-def shown(value: Any) -> str:
-    """A value as TOML writes it, as near as a message needs, and without passwords of addresses."""
+def as_toml(value: Any) -> str:
+    """A value roughly in TOML syntax, for messages; hides passwords of addresses."""
     if value is None or value is MISSING:
         return '""'
     if isinstance(value, bool):
@@ -190,30 +190,30 @@ def shown(value: Any) -> str:
     if isinstance(value, str | Path):
         return '"' + without_password(str(value)) + '"'
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(shown(v) for v in value) + "]"
+        return "[" + ", ".join(as_toml(v) for v in value) + "]"
     if is_dataclass(value):
         pairs = ((f.name, getattr(value, f.name), f.default) for f in fields(value))
-        return "{" + ", ".join(f"{n} = {shown(v)}" for n, v, d in pairs if v != d) + "}"
+        return "{" + ", ".join(f"{n} = {as_toml(v)}" for n, v, d in pairs if v != d) + "}"
     return brief(value) if isinstance(value, int | float) else str(value)
 
 
-def described(annotation: Any) -> str:
-    """What a key may be, in words: "a whole number from 1 to 65535"."""
+def describe_type(annotation: Any) -> str:
+    """The permitted values in words: "a whole number from 1 to 65535"."""
     meta, bare = _meta(annotation), _bare(annotation)
     if get_origin(bare) is Literal:
-        return "one of " + ", ".join(shown(choice) for choice in get_args(bare))
+        return "one of " + ", ".join(as_toml(choice) for choice in get_args(bare))
     if get_origin(bare) is tuple:
         args = get_args(bare)
         if args[-1] is Ellipsis:
-            return f"a list, each of it {described(args[0])}"
-        return f"a list of {len(args)}, each of it {described(args[0])}"
+            return f"a list, each of it {describe_type(args[0])}"
+        return f"a list of {len(args)}, each of it {describe_type(args[0])}"
     words = {bool: "true or false", int: "a whole number", float: "a number", str: "text"}
     words[Path] = "the path of a file or folder"
     return words.get(bare, str(bare)) + _limits(meta)
 
 
 def _list_example(annotation: Any, value: Any, path: str, where: str) -> str:
-    """For a list: how it is written there, with the given value where that is an item of it, or several with commas."""
+    """An example of a list's syntax; contains the given value if that is an item, or several with commas."""
     args = get_args(_bare(annotation))
     if get_origin(_bare(annotation)) is not tuple:
         return ""
@@ -225,15 +225,15 @@ def _list_example(annotation: Any, value: Any, path: str, where: str) -> str:
         for items in (parts, [_whole_number(part) for part in parts]):
             with suppress(MalformedError):
                 example = convert(items, annotation)
-    written = shown(example)[:_LONGEST_SHOWN]
-    # quoted, or a shell would take the quotes off
+    written = as_toml(example)[:_LONGEST_SHOWN]
+    # quoted for the shell
     return (
         f", such as --set '{path}={written}'" if where == COMMAND_LINE else f", such as {written}"
     )
 
 
 def _whole_number(text: str) -> int | str:
-    """The number, or the text where it is none that a key could have."""
+    """The number, or the text if it is no plausible number."""
     return int(text) if text.isdecimal() and len(text) < _LARGEST_BITS // 4 else text
 
 
@@ -255,23 +255,23 @@ def _limits(meta: Meta) -> str:
 
 def _docstring_words(section: Any) -> dict[str, str]:
     """The lines `name: words` or `name, name: words` of the docstrings, with their continuations."""
-    found: dict[str, str] = {}
+    words: dict[str, str] = {}
     for kind in reversed(section.__mro__[:-1]):
         current: list[str] = []
         for line in inspect.cleandoc(kind.__doc__ or "").splitlines():
             head = re.fullmatch(r"([a-z]\w*(?:, [a-z]\w*)*): (.+)", line)
             if head:
                 current = head[1].split(", ")
-                found |= dict.fromkeys(current, head[2])
+                words |= dict.fromkeys(current, head[2])
             elif line.startswith(" "):
-                found |= {name: f"{found[name]} {line.strip()}" for name in current}
+                words |= {name: f"{words[name]} {line.strip()}" for name in current}
             else:
                 current = []
-    return found
+    return words
 
 
 def _item_section(annotation: Any) -> Any:
-    """The section of which the key is a list, or None."""
+    """The section type of a list of sections, or None."""
     bare = _bare(annotation)
     args = get_args(bare)
     return args[0] if get_origin(bare) is tuple and args and is_dataclass(args[0]) else None

@@ -1,7 +1,6 @@
-"""The configuration in force, and where each of its values came from.
+"""The effective configuration, with the origin of each value.
 
-Precedence: flag > environment MOCAPD_* > config file > built-in. No part ever sees the whole of it;
-`service.py` hands each its own section.
+Precedence: flag > environment MOCAPD_* > config file > built-in. Parts receive only their own sections.
 """
 
 import logging
@@ -17,16 +16,16 @@ from mocapd.boundary.files import is_absent, user_path
 from mocapd.config.config_keys import (
     COMMAND_LINE,
     Key,
+    as_toml,
     build,
-    converted,
+    convert_value,
     keys_of,
     leaves,
-    shown,
     unknown_key,
 )
 from mocapd.config.removed_keys import REMOVED
 from mocapd.config.sections import CameraSection, Config
-from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parsed, read_toml
+from mocapd.config.sources import ENV_PREFIX, NOT_KEYS, TomlFile, env_name, parse_value, read_toml
 from mocapd.errors import ConfigError
 from mocapd.trackers.registry import RENAMED
 
@@ -34,41 +33,41 @@ _log = logging.getLogger(__name__)
 
 BUILT_IN = "built-in"
 
-Found = dict[str, tuple[Any, str]]  # key path: value, origin
+Values = dict[str, tuple[Any, str]]  # key path: value, origin
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One key with its effective value and where that came from."""
+    """One key with its effective value and origin."""
 
     key: Key
     value: Any
     origin: str
 
     @property
-    def changed(self) -> bool:
-        """Whether anything but the program itself set it."""
+    def is_changed(self) -> bool:
+        """True if the value is not the built-in one."""
         return self.origin != BUILT_IN
 
 
 @dataclass(frozen=True, slots=True)
 class Effective:
-    """The configuration in force. `file`: the config file that was read, None when there is none."""
+    """The effective configuration. `file`: the config file, None without one."""
 
     config: Config
     settings: tuple[Setting, ...]
     file: Path | None
 
 
-def known_keys() -> dict[str, Key]:
-    """Every key by its path, in the order in which they are documented."""
+def all_keys() -> dict[str, Key]:
+    """Every key by path, in the order of the documentation."""
     return {key.path: key for key in keys_of(Config)}
 
 
 def config_candidates() -> tuple[Path, ...]:
-    """Where a config file is looked for, in this order; the first that is not absent is read.
+    """Candidate paths of the config file; the first one present is read.
 
-    One that cannot be looked at is an error: as if there were none would drop passwords and TLS.
+    An inaccessible one is an error: ignoring it would drop passwords and TLS.
     """
     return (
         platformdirs.user_config_path("mocapd") / "config.toml",
@@ -82,82 +81,83 @@ def load_config(
     env: Mapping[str, str] | None = None,
     candidates: Sequence[Path] | None = None,
 ) -> Effective:
-    """Read every source and check every value.
+    """Reads all sources and checks all values.
 
-    `flags`: key paths to their text, as `--set` gives them. `file`: the config file, which must
-    exist. A tracker's former name becomes the present one, with a warning in the log. Raises ConfigError
-    naming the place, the key, the value and the mend; InputError when the file cannot be read.
+    `flags`: key paths to text, from `--set`. `file`: the config file, which must exist. A tracker's former name becomes
+    the present one, with a warning in the log. Raises ConfigError with origin, key, value and fix; InputError when the
+    file cannot be read.
     """
     env = os.environ if env is None else env
     if file is None and env.get("MOCAPD_CONFIG"):
         file = user_path(env["MOCAPD_CONFIG"])
     if file is None:
-        given = config_candidates() if candidates is None else candidates
-        file = next((path for path in given if not is_absent(path)), None)
-    known = known_keys()
-    found: Found = _from_file(read_toml(file), known) if file else {}
-    found |= _from_env(env, known)
-    found |= _from_flags(flags or {}, known)
-    _rename_tracker(found)
-    values = {path: value for path, (value, _) in found.items()}
+        paths = config_candidates() if candidates is None else candidates
+        file = next((path for path in paths if not is_absent(path)), None)
+    keys = all_keys()
+    given: Values = _from_file(read_toml(file), keys) if file else {}
+    given |= _from_env(env, keys)
+    given |= _from_flags(flags or {}, keys)
+    _rename_tracker(given)
+    values = {path: value for path, (value, _) in given.items()}
     settings = tuple(
-        Setting(key, *found.get(path, (key.default, BUILT_IN))) for path, key in known.items()
+        Setting(key, *given.get(path, (key.default, BUILT_IN))) for path, key in keys.items()
     )
-    return Effective(_built(values, found), settings, file)
+    return Effective(_build_config(values, given), settings, file)
 
 
-def _from_file(file: TomlFile, known: Mapping[str, Key]) -> Found:
-    found: Found = {}
+def _from_file(file: TomlFile, keys: Mapping[str, Key]) -> Values:
+    values: Values = {}
     folder = file.path.parent.absolute()
-    sections = {path.partition(".")[0]: path for path in known}
+    sections = {path.partition(".")[0]: path for path in keys}
     for name, value in file.data.items():
         if name not in sections:
             raise unknown_key(name, name, sections, file.where(name))
-        if isinstance(value, dict) and name in known:
+        if isinstance(value, dict) and name in keys:
             raise ConfigError(f"[{name}] is not a section", file.where(name), f"write [[{name}]]")
-        if not isinstance(value, dict) and name not in known:
+        if not isinstance(value, dict) and name not in keys:
             raise ConfigError(
-                f"{name} = {shown(value)}, but it is a section",
+                f"{name} = {as_toml(value)}, but it is a section",
                 file.where(name),
                 f"write [{name}] and its keys below",
             )
     for path, raw in leaves(file.data):
-        if path not in known:
-            raise _unknown(path, known, file.where(path))
-        value = converted(known[path].type, raw, path, file.where)
-        found[path] = (_beside(folder, known[path], value, file.where(path)), file.where(path))
-    return found
+        if path not in keys:
+            raise _unknown_key_error(path, keys, file.where(path))
+        key, where = keys[path], file.where(path)
+        value = convert_value(key.type, raw, path, file.where)
+        values[path] = (_absolute(folder, key, value, where), where)
+    return values
 
 
-def _from_env(env: Mapping[str, str], known: Mapping[str, Key]) -> Found:
-    by_name = {env_name(path): key for path, key in known.items()}
+def _from_env(env: Mapping[str, str], keys: Mapping[str, Key]) -> Values:
+    by_name = {env_name(path): key for path, key in keys.items()}
     removed = {env_name(path): path for path in REMOVED}
-    found: Found = {}
+    values: Values = {}
     for name in sorted(env):
         if not name.startswith(ENV_PREFIX) or name in NOT_KEYS:
             continue
         if name in removed:
-            raise _unknown(removed[name], known, f"environment {name}")
+            raise _unknown_key_error(removed[name], keys, f"environment {name}")
         if name not in by_name:
             raise unknown_key(name, name, by_name, "environment")
-        found[by_name[name].path] = _from_text(by_name[name], env[name], f"environment {name}")
-    return found
+        values[by_name[name].path] = _from_text(by_name[name], env[name], f"environment {name}")
+    return values
 
 
-def _from_flags(flags: Mapping[str, str], known: Mapping[str, Key]) -> Found:
-    found: Found = {}
+def _from_flags(flags: Mapping[str, str], keys: Mapping[str, Key]) -> Values:
+    values: Values = {}
     for path, text in flags.items():
-        if path not in known:
-            raise _unknown(path, known, COMMAND_LINE)
-        found[path] = _from_text(known[path], text, COMMAND_LINE)
-    return found
+        if path not in keys:
+            raise _unknown_key_error(path, keys, COMMAND_LINE)
+        values[path] = _from_text(keys[path], text, COMMAND_LINE)
+    return values
 
 
-def _rename_tracker(found: Found) -> None:
-    """Replace a former name of a tracker by the present one."""
-    name, origin = found.get("tracker.name", ("", ""))
+def _rename_tracker(values: Values) -> None:
+    """Replaces a tracker's former name by the present one."""
+    name, origin = values.get("tracker.name", ("", ""))
     if name in RENAMED:
-        found["tracker.name"] = (RENAMED[name], origin)
+        values["tracker.name"] = (RENAMED[name], origin)
         _log.warning(
             "%s: tracker.name: %r is now named %r; the next release no longer accepts the old name",
             origin,
@@ -166,58 +166,59 @@ def _rename_tracker(found: Found) -> None:
         )
 
 
-def _unknown(path: str, known: Mapping[str, Key], where: str) -> ConfigError:
+def _unknown_key_error(path: str, keys: Mapping[str, Key], where: str) -> ConfigError:
     if path in REMOVED:
         return ConfigError(f"there is no key {path!r} any more", where, REMOVED[path])
-    return unknown_key(path, path, known, where)
+    return unknown_key(path, path, keys, where)
 
 
 def _from_text(key: Key, text: str, origin: str) -> tuple[Any, str]:
     try:
         text.encode()
-    except UnicodeEncodeError:  # bytes of a command line or a variable; no output could say it
+    except UnicodeEncodeError:  # invalid bytes, which no output could show
         raise ConfigError(f"{key.path} is no UTF-8 text", origin, "give it another name") from None
-    value = converted(key.type, parsed(text, key.wants_text), key.path, lambda _: origin)
-    return _beside(Path.cwd(), key, value, origin), origin
+    parsed = parse_value(text, key.wants_text)
+    value = convert_value(key.type, parsed, key.path, lambda _: origin)
+    return _absolute(Path.cwd(), key, value, origin), origin
 
 
-def _beside(folder: Path, key: Key, value: Any, where: str) -> Any:
-    """Paths made absolute: a relative one is meant from the file that holds it."""
+def _absolute(folder: Path, key: Key, value: Any, where: str) -> Any:
+    """Makes paths absolute; relative paths start at the folder of the config file."""
     try:
         if isinstance(value, Path):
             return folder / user_path(value)
         if key.is_path and value:
             return str(folder / user_path(value))
         if key.path == "camera":
-            return tuple(_camera_beside(folder, camera) for camera in value)
+            return tuple(_absolute_camera(folder, camera) for camera in value)
     except ConfigError as error:
         raise ConfigError(f"{key.path} = {error.what}", where, error.fix) from None
     return value
 
 
-def _camera_beside(folder: Path, camera: CameraSection) -> CameraSection:
-    from mocapd.capture.kinds.source_kinds import address_beside  # imports every kind of source
+def _absolute_camera(folder: Path, camera: CameraSection) -> CameraSection:
+    from mocapd.capture.kinds.source_kinds import address_in_folder  # imports every kind of source
 
     strokes = camera.white_balance
     return replace(
         camera,
-        source=address_beside(folder, camera.source),
+        source=address_in_folder(folder, camera.source),
         white_balance=folder / user_path(strokes) if strokes else None,
     )
 
 
-def _built(values: Mapping[str, Any], found: Found) -> Config:
+def _build_config(values: Mapping[str, Any], given: Values) -> Config:
     try:
         config: Config = build(Config, values)
     except ConfigError as error:
-        # the part knows key and mend, we know where the value was given
-        origin = found[error.where][1] if error.where in found else ""
+        # the part's error has key and fix; add the value's origin
+        origin = given[error.where][1] if error.where in given else ""
         where = f"{origin}: {error.where}" if origin else error.where
         raise ConfigError(error.what, where, error.fix) from None
     ids = [camera.id for camera in config.camera]
     for name in ids:
         if ids.count(name) > 1:
             raise ConfigError(
-                f"two cameras have the id {name!r}", found["camera"][1], "rename one of them"
+                f"two cameras have the id {name!r}", given["camera"][1], "rename one of them"
             )
     return config

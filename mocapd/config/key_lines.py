@@ -1,4 +1,4 @@
-"""On which lines of a TOML text its keys stand."""
+"""Finds the line numbers of the keys in a TOML text."""
 
 import re
 from collections.abc import Iterator
@@ -8,7 +8,7 @@ _PREFIX_END = re.compile(r"[.\[]")
 
 
 class KeyLines:
-    """An index made once: a lookup takes no time that grows with the text."""
+    """Index of line numbers: a look-up takes constant time."""
 
     def __init__(self, text: str) -> None:
         self._first: dict[str, int] = {}  # by key and by each prefix of a key
@@ -19,16 +19,16 @@ class KeyLines:
                 self._first.setdefault(prefix, number)
 
     def line_of(self, key: str) -> int | None:
-        """The line where a key such as "camera[1].fps" is set, or its section begins; None when neither is found."""
+        """The line of a key such as "camera[1].fps", else of its section; None when neither is found."""
         if key in self._first:
             return self._first[key]
-        found = [self._last[prefix] for prefix in _prefixes(key) if prefix in self._last]
-        return max(found, default=None)
+        lines = [self._last[prefix] for prefix in _prefixes(key) if prefix in self._last]
+        return max(lines, default=None)
 
 
 def _prefixes(path: str) -> list[str]:
-    """The path itself and what stands before each of its dots and brackets."""
-    return [path, *(path[: found.start()] for found in _PREFIX_END.finditer(path))]
+    """The path, and its prefixes before each dot and bracket."""
+    return [path, *(path[: end.start()] for end in _PREFIX_END.finditer(path))]
 
 
 def _keys(text: str) -> Iterator[tuple[int, str]]:

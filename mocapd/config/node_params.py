@@ -1,4 +1,4 @@
-"""The section [node] of the configuration: what is a camera node's own."""
+"""The section [node] of the configuration, for camera nodes."""
 
 from dataclasses import dataclass
 from typing import Annotated
@@ -10,13 +10,13 @@ Side = Annotated[int, Meta(ge=16, le=8192)]
 
 @dataclass(frozen=True, slots=True)
 class Params:
-    """What `mocapd camera-node` needs besides [[camera]] and [zenoh].
+    """Settings of `mocapd camera-node` in addition to [[camera]] and [zenoh].
 
     size_px: width and height to ask the webcams for [px]
     jpeg_quality: of pictures that a camera does not deliver as JPEG, 1 to 100
-    paired_user: who may set the cameras' controls: a user of zenoh.password_file, or with zenoh.tls_require_client the
-      name (CN) in the certificate; empty: nobody
-    router_decides: behind a router, where nobody can be told apart: take orders from whomever its access control lets through
+    paired_user: the client that may set the cameras' controls: a user of zenoh.password_file, or with
+      zenoh.tls_require_client the name (CN) in the certificate; empty: none
+    router_decides: behind a router, where clients cannot be identified: take the orders that its access control permits
     """
 
     size_px: tuple[Side, Side] = (640, 480)

@@ -1,4 +1,4 @@
-"""Keys of earlier versions, and what to do about each of them."""
+"""Removed keys of earlier versions, with advice for each."""
 
 from collections.abc import Iterable, Mapping
 
@@ -8,13 +8,13 @@ def _each(prefix: str, names: str, advice: str) -> Mapping[str, str]:
 
 
 def _predictions(outputs: Iterable[str]) -> Mapping[str, str]:
-    found = {}
+    advice = {}
     for name in outputs:
-        found[f"{name}.predict_hz"] = "all outputs share it: write hz = ... under [prediction]"
-        found[f"{name}.predict_ahead_ms"] = (
+        advice[f"{name}.predict_hz"] = "all outputs share it: write hz = ... under [prediction]"
+        advice[f"{name}.predict_ahead_ms"] = (
             "all outputs share it: write ahead_ms = ... under [prediction]"
         )
-    return found
+    return advice
 
 
 _STUDY = "it served studies only, which lab/compared/ablations.py now does: leave it out"

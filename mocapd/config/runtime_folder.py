@@ -1,4 +1,4 @@
-"""Where a running process tells others of its user how to reach it."""
+"""The folder in which a process announces itself to other processes of its user."""
 
 import os
 from pathlib import Path
@@ -16,8 +16,8 @@ def runtime_folder(state_dir: Path) -> Path:
 
 
 def folders_to_look_in(state_dir: Path, sessions: Path = SESSIONS) -> tuple[Path, ...]:
-    """Where a process of our user may be told of: it may have been started in a session and asked for from outside of
-    one, as by cron, or the other way round."""
+    """Folders that may announce a process of our user: server and client may run inside or outside of a session, as under
+    cron."""
     usual = runtime_folder(state_dir)
     of_session = sessions / str(os.geteuid()) / "mocapd"
     return (state_dir, of_session) if usual == state_dir else (usual, state_dir)

@@ -21,20 +21,20 @@ from mocapd.tracking.tracking_state import COAST_S, TrackingStateParams
 
 
 def default_cache_dir() -> Path:
-    """Under systemd $CACHE_DIRECTORY, else XDG."""
+    """$CACHE_DIRECTORY under systemd, else the XDG folder."""
     given = os.environ.get("CACHE_DIRECTORY", "").partition(":")[0]
     return Path(given) if given else platformdirs.user_cache_path("mocapd")
 
 
 def default_state_dir() -> Path:
-    """Where calibrations are kept: under systemd $STATE_DIRECTORY, else XDG."""
+    """Folder of calibrations: $STATE_DIRECTORY under systemd, else the XDG folder."""
     given = os.environ.get("STATE_DIRECTORY", "").partition(":")[0]
     return Path(given) if given else platformdirs.user_state_path("mocapd")
 
 
 @dataclass(frozen=True, slots=True)
 class ControlsSection(Controls):
-    """What to set in a webcam; a value that is not given stays the camera's own.
+    """Controls of a webcam; a missing value stays the camera's own.
 
     auto_exposure, auto_wb, autofocus: whether the camera does it itself
     exposure: in the camera's unit, mostly 100 us
@@ -51,11 +51,12 @@ class CameraSection:
     """One camera.
 
     id: its name in the rig file
-    source: what `mocapd cameras` or `camera-node` prints, a file, FOLDER#camN, a URL, sim:NAME#camN; a wrong one tells all
+    source: what `mocapd cameras` or `camera-node` prints, a file, FOLDER#camN, a URL, sim:NAME#camN; the error of a wrong
+      one lists all forms
     fps_hz: rate to ask a webcam for [Hz]
     wait_s: how long its picture may come after the first one of the same moment [s], in place of bundler.wait_s; for one on a
       network
-    white_balance: a picture of the shirt in this place's own light, with its `_strokes.png` beside it
+    white_balance: a picture of the shirt in this place's own light, with its `_strokes.png` in the same folder
     """
 
     id: Annotated[str, Meta(min_length=1)]
@@ -79,7 +80,7 @@ class BundlerSection:
 
 @dataclass(frozen=True, slots=True)
 class TrackerSection:
-    """Which tracker, and what it needs to know of the wearer.
+    """The tracker, and its assumptions about the wearer.
 
     name: auto, by all cues that can run; shirt or markerless, by that alone; canned (moves by itself); wang2011, hecht2009,
       rao_hodges (as published)
@@ -98,13 +99,13 @@ class TrackerSection:
 
     @property
     def tracking(self) -> TrackingStateParams:
-        """When a person counts as lost."""
+        """Parameters of the loss of a person."""
         return TrackingStateParams(coast_s=self.coast_s)
 
 
 @dataclass(frozen=True, slots=True)
 class ShirtSection:
-    """What is known of the shirt without a setup.
+    """The shirt's colours without a setup.
 
     colour_model: folder of images of the shirt with strokes
     """
@@ -143,8 +144,8 @@ class Config:
     instance: this daemon's name in the Zenoh keys; empty: the machine's name
     rig: the calibration of the cameras: a rig file, a calibration.toml or a folder with one; without it that of state_dir
     log_level: how much is logged on stderr
-    cache_dir: where what can be made again is kept (compiled code, pose database)
-    state_dir: where the calibration is kept that `mocapd calibrate` saves
+    cache_dir: folder of reproducible files (compiled code, pose database)
+    state_dir: folder of the calibration that `mocapd calibrate` saves
     camera: the cameras, one [[camera]] section each
     outputs: a section for each, [zenoh], [osc], ...
     """

@@ -1,4 +1,4 @@
-"""Where values come from: a TOML file with line numbers, the environment, flags."""
+"""Sources of values: a TOML file with line numbers, the environment, flags."""
 
 import re
 from collections.abc import Mapping
@@ -13,13 +13,13 @@ from mocapd.errors import ConfigError, InputError, MalformedError
 
 _MOST_BYTES = 64_000  # a file that sets every key takes some kB
 ENV_PREFIX = "MOCAPD_"
-# Read elsewhere, not keys: which file to read, and what .ci/run tells the tests.
+# Variables that are no keys: the path of the file, and a switch of the tests.
 NOT_KEYS = ("MOCAPD_CONFIG", "MOCAPD_REQUIRE_SHARED")
 
 
 @dataclass(frozen=True, slots=True)
 class TomlFile:
-    """A parsed file that can say on which line a key stands."""
+    """A parsed file with the line numbers of its keys."""
 
     path: Path
     data: Mapping[str, Any]
@@ -32,7 +32,7 @@ class TomlFile:
 
 
 def read_toml(path: Path) -> TomlFile:
-    """Raises InputError when it cannot be read, ConfigError with the line when it is not TOML."""
+    """Reads a TOML file. Raises InputError when it cannot be read, ConfigError with the line for invalid TOML."""
     try:
         text = read_text(path, _MOST_BYTES)
     except MissingError:
@@ -42,8 +42,8 @@ def read_toml(path: Path) -> TomlFile:
     try:
         return TomlFile(path, parse_toml(text), KeyLines(text))
     except MalformedError as error:
-        found = re.search(r"at line (\d+)", error.what)
-        where = f"{path}:{found[1]}" if found else str(path)
+        line = re.search(r"at line (\d+)", error.what)
+        where = f"{path}:{line[1]}" if line else str(path)
         raise ConfigError(f"not valid TOML ({error.what})", where, "mend that line") from None
 
 
@@ -52,8 +52,8 @@ def env_name(path: str) -> str:
     return ENV_PREFIX + path.replace(".", "_").upper()
 
 
-def parsed(text: str, wants_text: bool) -> Any:
-    """A value from a flag or a variable: TOML, except that text needs no quotes."""
+def parse_value(text: str, wants_text: bool) -> Any:
+    """Parses a value of a flag or a variable: TOML, but text needs no quotes."""
     if wants_text and not text.startswith(("[", '"', "'")):
         return text
     try:

@@ -1,4 +1,4 @@
-"""What a user may set of the page in the browser."""
+"""The section [web] of the configuration: the page in the browser."""
 
 import re
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ _LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 _ORIGIN = re.compile(
     r"(?P<scheme>https?)://(?P<host>[a-z0-9-]+(\.[a-z0-9-]+)*|\[[0-9a-f:]+\])(:(?P<port>[1-9]\d{0,4}))?"
 )
-_DEFAULT_PORTS = {"http": "80", "https": "443"}  # a browser leaves it out
+_DEFAULT_PORTS = {"http": "80", "https": "443"}  # a browser omits it
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,9 +20,9 @@ class Params:
     """The page with the setup and the live view, on this machine only (127.0.0.1). Raises ConfigError.
 
     enabled: serve the page
-    port: its TCP port; 0: a free one, told when it starts
-    allow_origins: sites whose pages may have the frames, and nothing else, once given `mocapd web-link`
-    metrics: serve figures for Prometheus at /metrics, to who has the key in metrics.key of state_dir
+    port: its TCP port; 0: a free one, printed at the start
+    allow_origins: sites whose pages may receive the frames, and nothing else, after `mocapd web-link`
+    metrics: serve figures for Prometheus at /metrics, to clients with the key in metrics.key of state_dir
     """
 
     enabled: bool = True
@@ -36,21 +36,21 @@ class Params:
 
 
 def is_of_this_machine(origin: str) -> bool:
-    """Whether only this machine serves pages of this origin."""
-    found = _ORIGIN.fullmatch(origin)
-    return found is not None and found["host"] in _LOOPBACK
+    """True if only this machine serves pages of this origin."""
+    parts = _ORIGIN.fullmatch(origin)
+    return parts is not None and parts["host"] in _LOOPBACK
 
 
 def _check_origin(origin: str) -> None:
-    """Raises ConfigError for what no browser would send, and for sites that a network could change."""
-    found = _ORIGIN.fullmatch(origin)
-    if found is None or found["port"] == _DEFAULT_PORTS[found["scheme"]]:
+    """Raises ConfigError for an origin that no browser sends, and for sites without encryption."""
+    parts = _ORIGIN.fullmatch(origin)
+    if parts is None or parts["port"] == _DEFAULT_PORTS[parts["scheme"]]:
         raise _refusal(
             origin,
             "write the origin as a browser does: https://game.example or http://localhost:8000, in small"
             " letters, without a path, a * or the usual port",
         )
-    if found["scheme"] == "http" and found["host"] not in _LOOPBACK:
+    if parts["scheme"] == "http" and parts["host"] not in _LOOPBACK:
         raise _refusal(
             origin,
             f"write https{origin.removeprefix('http')} (whoever is on the way could change a page without"

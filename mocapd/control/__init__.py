@@ -1,1 +1,1 @@
-"""How commands of the same user, and of root, reach a running daemon: a Unix socket, with or without the page."""
+"""Unix socket by which commands of the same user, and of root, reach a running daemon, with or without the page."""

@@ -1,4 +1,4 @@
-"""A command's end of the control socket: finds running daemons, and asks them."""
+"""Client of the control socket: finds running daemons and sends them requests."""
 
 import os
 import socket
@@ -41,8 +41,8 @@ from mocapd.errors import (
 
 T = TypeVar("T", StatusReport, Recentered, Reloaded)
 
-ANSWER_S = 5.0  # how long a living daemon may take to answer [s]
-RELOAD_S = 300.0  # and to prepare another session; kernels may have to be compiled for it [s]
+ANSWER_S = 5.0  # timeout of an answer [s]
+RELOAD_S = 300.0  # timeout of a reload, which may compile kernels [s]
 _LONGEST_ANSWER = 1 << 20  # [bytes]
 
 _BY_EXIT_CODE: dict[int, type[MocapdError]] = {
@@ -58,9 +58,9 @@ _BY_EXIT_CODE: dict[int, type[MocapdError]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """Daemons that answered, and sockets of living ones that did not: `silent` gave no answer, `foreign` are of
-    another user, who may be asked by root alone, or the folder in which that user's lie."""
+class FoundDaemons:
+    """Daemons that answered, and sockets of others: `silent` did not answer, `foreign` (sockets or their folder) belong to
+    another user and answer to root only."""
 
     daemons: "tuple[RunningDaemon, ...]" = ()
     silent: tuple[Path, ...] = ()
@@ -69,7 +69,7 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class RunningDaemon:
-    """One that answers, and what it said."""
+    """A daemon that answers, and its status."""
 
     path: Path
     status: StatusReport
@@ -81,43 +81,44 @@ class RunningDaemon:
 
     @property
     def state_dir(self) -> str:
-        """Where its calibration is kept."""
+        """The folder of its calibration."""
         return self.status.state_dir
 
     def recenter(self) -> Recentered:
-        """Have it make forward what the person faces. Raises MocapdError with its own words."""
-        return _asked(self.path, "recenter", Recentered, ANSWER_S)
+        """Makes the person's heading forward. Raises the daemon's MocapdError."""
+        return _request(self.path, "recenter", Recentered, ANSWER_S)
 
     def reload(self) -> Reloaded:
-        """Have it read its configuration again. Raises MocapdError with its own words: it goes on as it was."""
-        return _asked(self.path, "reload", Reloaded, RELOAD_S)
+        """Reloads the configuration. Raises the daemon's MocapdError; it then continues unchanged."""
+        return _request(self.path, "reload", Reloaded, RELOAD_S)
 
 
 class _ForeignError(UnavailableError):
-    """The socket is another user's."""
+    """The socket belongs to another user."""
 
     def __init__(self, path: Path) -> None:
         super().__init__("is another user's", str(path), "ask as that user, or as root")
 
 
 class _DeadError(UnavailableError):
-    """Nobody listens there any more."""
+    """No process listens at the socket."""
 
     def __init__(self, path: Path) -> None:
-        super().__init__("has ended", str(path), "start it anew")
+        super().__init__("has ended", str(path), "restart it")
 
 
-def running_daemons(folders: Iterable[Path], services: Iterable[Path] | None = None) -> Found:
-    """Those of our user's folders, and the machine's services. Sockets that a killed process has left in those
-    folders are removed."""
-    found: list[RunningDaemon] = []
+def running_daemons(
+    folders: Iterable[Path], services: Iterable[Path] | None = None
+) -> FoundDaemons:
+    """Daemons of the user's folders, and the machine's services. Removes stale sockets from the folders."""
+    daemons: list[RunningDaemon] = []
     silent: list[Path] = []
     foreign = list(closed_folders()) if services is None else []
     own = [path for folder in folders for path in sockets_in(folder)]
     theirs = service_sockets() if services is None else services
     for path in dict.fromkeys((*own, *theirs)):
         try:
-            found.append(RunningDaemon(path, _asked(path, "status", StatusReport, ANSWER_S)))
+            daemons.append(RunningDaemon(path, _request(path, "status", StatusReport, ANSWER_S)))
         except _ForeignError:
             foreign.append(path)
         except _DeadError:
@@ -126,11 +127,11 @@ def running_daemons(folders: Iterable[Path], services: Iterable[Path] | None = N
                     path.unlink()
         except UnavailableError:
             silent.append(path)
-    return Found(tuple(found), tuple(silent), tuple(foreign))
+    return FoundDaemons(tuple(daemons), tuple(silent), tuple(foreign))
 
 
-def _asked(path: Path, verb: Verb, kind: type[T], within_s: float) -> T:
-    """Raises MocapdError."""
+def _request(path: Path, verb: Verb, kind: type[T], within_s: float) -> T:
+    """Sends a request and returns its answer. Raises MocapdError."""
     try:
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
             connection.settimeout(within_s)
@@ -141,7 +142,7 @@ def _asked(path: Path, verb: Verb, kind: type[T], within_s: float) -> T:
                 return decode_json(bytes(answer.told), kind)
     except TimeoutError:
         raise UnavailableError(
-            f"does not answer within {within_s:g} s", str(path), "start it anew"
+            f"does not answer within {within_s:g} s", str(path), "restart it"
         ) from None
     except MalformedError as error:
         raise UnavailableError(
@@ -150,8 +151,8 @@ def _asked(path: Path, verb: Verb, kind: type[T], within_s: float) -> T:
             "bring it and this command to the same version of mocapd",
         ) from None
     except OSError as error:
-        raise UnavailableError(f"no answer: {error.strerror}", str(path), "start it anew") from None
-    raise _named(answer.refused)
+        raise UnavailableError(f"no answer: {error.strerror}", str(path), "restart it") from None
+    raise _error_of(answer.refused)
 
 
 def _connect(connection: socket.socket, path: Path) -> None:
@@ -162,11 +163,11 @@ def _connect(connection: socket.socket, path: Path) -> None:
         raise _ForeignError(path) from None
     except (ConnectionRefusedError, FileNotFoundError):
         raise _DeadError(path) from None
-    # root asks everybody; nobody else believes what another user's process says
+    # root may ask every daemon; other users trust only processes of their own
     if not (os.geteuid() == 0 or may_command(peer_of(connection))):
         raise _ForeignError(path)
 
 
-def _named(refused: Refused) -> MocapdError:
+def _error_of(refused: Refused) -> MocapdError:
     kind = _BY_EXIT_CODE.get(refused.exit_code, UnavailableError)
     return kind(refused.what, refused.where, refused.fix)

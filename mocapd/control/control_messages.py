@@ -1,4 +1,4 @@
-"""What is asked at the control socket, and answered: one line of JSON each way, then it is closed."""
+"""Requests and answers of the control socket: one line of JSON each way, then it is closed."""
 
 from typing import Annotated, Literal
 
@@ -11,13 +11,13 @@ Verb = Literal["status", "recenter", "reload"]
 
 
 class Request(msgspec.Struct, frozen=True):
-    """What the daemon shall do."""
+    """A command for the daemon."""
 
     verb: Verb
 
 
 class Refused(msgspec.Struct, frozen=True):
-    """Why it was not done; exit_code: of the MocapdError."""
+    """The error of a refused request; exit_code: of the MocapdError."""
 
     what: str
     where: str
@@ -26,22 +26,22 @@ class Refused(msgspec.Struct, frozen=True):
 
 
 class Answer(msgspec.Struct, frozen=True, omit_defaults=True):
-    """told: a StatusReport, Recentered or Reloaded, by what was asked; or `refused`."""
+    """told: a StatusReport, Recentered or Reloaded, by the request's verb; or `refused`."""
 
     told: msgspec.Raw = msgspec.Raw(b"null")
     refused: Refused | None = None
 
 
 class Recentered(msgspec.Struct, frozen=True):
-    """yaw_deg: see messages.Facing; outputs: those that were told."""
+    """yaw_deg: see messages.Facing; outputs: names of the informed outputs."""
 
     yaw_deg: Annotated[float, Meta(ge=-180, le=180)]
     outputs: tuple[str, ...]
 
 
 class Reloaded(msgspec.Struct, frozen=True):
-    """gap_s: without a frame, while cameras were closed and opened [s]; waiting: keys and sections that were
-    changed, but are taken up by the next start alone."""
+    """gap_s: time without frames, while cameras were reopened [s]; waiting: changed keys and sections that need a restart
+    to take effect."""
 
     gap_s: float
     waiting: tuple[str, ...]
@@ -63,8 +63,8 @@ class CameraStatusReport(msgspec.Struct, frozen=True):
 
 
 class OutputReport(msgspec.Struct, frozen=True):
-    """One output. listeners: -1 where the protocol cannot tell; not_sent: frames that nobody listened to, that were
-    refused, or that came too late for it."""
+    """One output. listeners: -1 where the protocol has no count; not_sent: frames without a listener, refused, or too
+    late."""
 
     name: str
     sent: int
@@ -74,7 +74,7 @@ class OutputReport(msgspec.Struct, frozen=True):
 
 
 class CalibrationReport(msgspec.Struct, frozen=True):
-    """What is tracked with. made_unix_s: None where its file does not say."""
+    """The calibration in use. made_unix_s: None if its file has no date."""
 
     source: str
     made_unix_s: float | None = None
@@ -89,11 +89,10 @@ class Trouble(msgspec.Struct, frozen=True):
 
 
 class StatusReport(msgspec.Struct, frozen=True):
-    """How a daemon fares. state: see service.fitness; latencies: capture to publish, None before the first frame;
-    lag_median_ms: how much older than that the pose of somebody who moves is, by the tracker's filter and smoothing;
-    published: frames since the start; dropped: frame sets displaced by newer ones; lost_reason: for people, why nobody is
-    tracked though somebody moves, and what they can do; mostly empty; effort, slowness: see messages.Health; preparing: what
-    a first start still prepares, for people."""
+    """The status of a daemon. state: see service.readiness; latencies: capture to publish, None before the first frame;
+    lag_median_ms: additional lag of a moving person's pose, by the tracker's filter and smoothing; published: frames since
+    the start; dropped: frame sets replaced by newer ones; lost_reason: for users, why motion is not tracked, and the fix;
+    mostly empty; effort, slowness: see messages.Health; preparing: remaining work of a first start, for users."""
 
     version: str
     pid: int

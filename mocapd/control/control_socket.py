@@ -1,4 +1,4 @@
-"""The daemon's end of the control socket: answers its own user and root, each in a thread, a few at once."""
+"""Server of the control socket: answers its own user and root, each connection in a thread, a few at once."""
 
 import logging
 import os
@@ -26,16 +26,16 @@ from mocapd.errors import (
 )
 
 LONGEST_REQUEST = 4 << 10  # [bytes]
-ASK_S = 2.0  # that a request may take to come, and its answer to be taken [s]
+ASK_S = 2.0  # timeout of receiving a request and of sending the answer [s]
 MOST_AT_ONCE = 16  # connections; further ones are closed
-_LOOK_EVERY_S = 0.1  # whether it is to end [s]
+_LOOK_EVERY_S = 0.1  # poll interval of the shutdown flag [s]
 
 _log = logging.getLogger(__name__)
 
 
 class ControlSocket:
-    """Serves from `open` to `close`. `answer` does what is asked, in a thread of its own, and raises MocapdError
-    for a refusal; `died` hears, there, of anything unexpected."""
+    """Serves from `open` to `close`. `answer` executes a request, in a thread of its own, and raises MocapdError to refuse;
+    `died` is called there with any unexpected exception."""
 
     def __init__(
         self,
@@ -47,10 +47,10 @@ class ControlSocket:
         self._server: _Server | None = None
 
     def open(self) -> None:
-        """Returns as soon as it can be asked. Raises CannotCreateError."""
+        """Starts serving. Raises CannotCreateError."""
         try:
             self._path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            self._path.unlink(missing_ok=True)  # of a process that had our number before
+            self._path.unlink(missing_ok=True)  # left by an earlier process with our pid
             self._server = _Server(self._path, self._answer, self._died)
         except OSError as error:
             raise CannotCreateError(
@@ -63,7 +63,7 @@ class ControlSocket:
         ).start()
 
     def close(self) -> None:
-        """No new connection; those there are end with the process. May be called twice."""
+        """Refuses new connections; open ones end with the process. Idempotent."""
         server, self._server = self._server, None
         if server is not None:
             server.shutdown()
@@ -85,36 +85,36 @@ class _Server(socketserver.ThreadingMixIn, socketserver.UnixStreamServer):
         self.answer = answer
         self._died = died
         self._room = threading.BoundedSemaphore(MOST_AT_ONCE)
-        self._told_of_strangers = False
+        self._has_logged_stranger = False
         with short_address(path) as address:
             super().__init__(address, _Connection)
 
     def server_bind(self) -> None:
-        """For nobody else, from its first moment: Linux makes the file with the socket's own mode."""
+        """Private from its creation: Linux creates the file with the socket's mode."""
         os.fchmod(self.socket.fileno(), 0o600)
         self.socket.bind(self.server_address)
 
     def verify_request(self, _request: Any, _address: Any) -> bool:
-        """Whether there is room for another one."""
+        """True if another connection is allowed."""
         return self._room.acquire(blocking=False)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """One connection, in its thread."""
+        """Handles one connection, in its thread."""
         try:
             super().process_request_thread(request, client_address)
         finally:
             self._room.release()
 
     def handle_error(self, _request: Any, _address: Any) -> None:
-        """The library would print it, and go on."""
+        """Reports an exception, which the library would only print."""
         error = sys.exc_info()[1]
         if error is not None:
             self._died(error)
 
     def stranger(self, uid: int) -> None:
-        """Somebody else has come in, whose right the file's mode does not give."""
-        if not self._told_of_strangers:
-            self._told_of_strangers = True
+        """Logs the first connection of another user, which the file's mode should prevent."""
+        if not self._has_logged_stranger:
+            self._has_logged_stranger = True
             _log.warning("user %d asked at the control socket, and is refused", uid)
 
 
@@ -123,20 +123,20 @@ class _Connection(socketserver.BaseRequestHandler):
     request: socket.socket
 
     def handle(self) -> None:
-        """Read one line, answer with one."""
+        """Reads one line, answers with one."""
         with suppress(OSError):  # it has left, or takes too long
             self.request.settimeout(ASK_S)
-            self.request.sendall(msgspec.json.encode(self._answered()) + b"\n")
+            self.request.sendall(msgspec.json.encode(self._make_answer()) + b"\n")
 
-    def _answered(self) -> Answer:
+    def _make_answer(self) -> Answer:
         try:
             uid = peer_of(self.request)
             if not may_command(uid):
                 self.server.stranger(uid)
                 raise PermissionDeniedError("another user's", "the control socket")
             asked = decode_json(read_line(self.request, LONGEST_REQUEST, ASK_S), Request)
-            told = self.server.answer(asked.verb)
-            return Answer(msgspec.Raw(msgspec.json.encode(told)))
+            result = self.server.answer(asked.verb)
+            return Answer(msgspec.Raw(msgspec.json.encode(result)))
         except MalformedError as error:
             return _refusal(MalformedError(f"not understood: {error.what}", "the control socket"))
         except MocapdError as error:

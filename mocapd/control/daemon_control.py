@@ -1,4 +1,4 @@
-"""What a daemon does when it is asked at its control socket."""
+"""Executes the requests of a daemon's control socket."""
 
 import logging
 from pathlib import Path
@@ -18,8 +18,8 @@ _log = logging.getLogger(__name__)
 
 
 class DaemonControl:
-    """A context manager, and a hook of the loop when there is one (see main_loop.LoopHook). Its socket is there from
-    `open` on, while the first session is still prepared. `path`: where."""
+    """A context manager and LoopHook (see main_loop). The socket exists from `open` on, while the first session is still
+    prepared. `path`: of the socket."""
 
     def __init__(
         self, path: Path, config: Config, outputs: OpenOutputs, trouble: LastTrouble
@@ -38,22 +38,22 @@ class DaemonControl:
         self.let_go()
 
     def open(self) -> None:
-        """The outputs are open: somebody may ask."""
+        """Opens the socket, once the outputs are open."""
         try:
             self._socket.open()
-        except MocapdError as error:  # it tracks as well without
+        except MocapdError as error:  # tracking does not need it
             _log.warning("`mocapd status` will not find this daemon: %s", error)
 
     def preparing(self, text: str) -> None:
-        """Where preparations stand, in words for people; empty when they are over."""
+        """Sets the progress of preparations, for users; empty when they are over."""
         self._preparing = text
 
     def what_is_prepared(self) -> str:
-        """The newest that `preparing` was given."""
+        """The last text of `preparing`."""
         return self._preparing
 
     def attach(self, service: Service, reloads: Reloads) -> None:
-        """There is a session."""
+        """Registers the service once there is a session."""
         self._reloads, self._service = reloads, service
         if self._death is not None:
             service.died(self._death)
@@ -66,13 +66,13 @@ class DaemonControl:
         self._socket.close()
 
     def _died(self, error: BaseException) -> None:
-        """In a thread of the socket's."""
+        """Called in a thread of the socket."""
         self._death = error
         if self._service is not None:
             self._service.died(error)
 
     def _answer(self, verb: Verb) -> StatusReport | Recentered | Reloaded:
-        """In a thread of the socket's. Raises MocapdError."""
+        """Called in a thread of the socket. Raises MocapdError."""
         service = self._service
         if service is None:
             if verb != "status":

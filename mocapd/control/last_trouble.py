@@ -1,4 +1,4 @@
-"""Remembers the newest warning of the log, for who asks how the daemon fares."""
+"""Stores the newest warning of the log, for the status report."""
 
 import logging
 
@@ -8,7 +8,7 @@ _LONGEST = 1000  # characters
 
 
 class LastTrouble(logging.Handler):
-    """Hears mocapd's own warnings and errors from `__enter__` to `__exit__`, as far as `log_level` lets them be made."""
+    """Receives mocapd's warnings and errors from `__enter__` to `__exit__`, if `log_level` permits them."""
 
     def __init__(self) -> None:
         super().__init__(logging.WARNING)
@@ -23,11 +23,11 @@ class LastTrouble(logging.Handler):
         logging.getLogger("mocapd").removeHandler(self)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Take note of one record."""
+        """Stores one record."""
         text = record.getMessage()[:_LONGEST]
         self._newest = Trouble(record.created, record.levelname.lower(), text)
 
     @property
     def newest(self) -> Trouble | None:
-        """None while there was none; from any thread."""
+        """The newest warning, or None; thread-safe."""
         return self._newest

@@ -9,7 +9,7 @@ _CHUNK = 1 << 16
 
 
 def read_line(connection: socket.socket, most_bytes: int, within_s: float) -> bytes:
-    """Without its end; what follows it is left out. Raises MalformedError, or OSError: TimeoutError after
+    """Reads a line without its end; drops what follows. Raises MalformedError, or OSError: TimeoutError after
     `within_s` [s], however slowly the bytes drip."""
     until_s = time.monotonic() + within_s
     data = bytearray()

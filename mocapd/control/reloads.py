@@ -1,4 +1,4 @@
-"""Threads that wait until the configuration has been read again by the one that does it."""
+"""Queue of reload requests: threads wait until the owner has reloaded the configuration."""
 
 import threading
 from dataclasses import dataclass, field
@@ -15,9 +15,9 @@ class _Wish:
 
 
 class Reloads:
-    """`ask` is called by any thread and waits; everything else by the owner of the session.
+    """Any thread calls `ask`, which waits; the session's owner calls the rest.
 
-    What is read is read after somebody asked: who asks while another reading is under way waits for the next one.
+    A reload starts after its request: a request during a reload waits for the next one.
     """
 
     def __init__(self) -> None:
@@ -27,7 +27,7 @@ class Reloads:
         self._closed = False
 
     def ask(self) -> Reloaded:
-        """Returns when it has been taken up. Raises the MocapdError for which it was refused."""
+        """Requests a reload and waits for it. Raises the MocapdError of a refusal."""
         wish = _Wish()
         with self._lock:
             if self._closed:
@@ -39,14 +39,14 @@ class Reloads:
         return wish.reloaded
 
     def take(self) -> bool:
-        """Whether somebody asks; a reading that begins now is for them."""
+        """True if requests wait; a reload that starts now answers them."""
         with self._lock:
             self._under_way += self._asking
             self._asking = []
             return bool(self._under_way)
 
     def settle(self, outcome: Reloaded | MocapdError) -> None:
-        """The reading that was begun has come to this end."""
+        """Reports the outcome of the current reload."""
         with self._lock:
             done, self._under_way = self._under_way, []
         for wish in done:
@@ -57,7 +57,7 @@ class Reloads:
             wish.settled.set()
 
     def close(self) -> None:
-        """Nothing is taken up any more."""
+        """Refuses all waiting and later requests."""
         with self._lock:
             self._closed = True
         self.take()
@@ -65,4 +65,4 @@ class Reloads:
 
 
 def _ending() -> UnavailableError:
-    return UnavailableError("it is ending", "the daemon", "start it anew")
+    return UnavailableError("it is ending", "the daemon", "restart it")

@@ -1,4 +1,4 @@
-"""From a running service to the answer of `mocapd status`."""
+"""Builds the answer to `mocapd status` from a running service."""
 
 import math
 import os
@@ -17,20 +17,20 @@ from mocapd.control.control_messages import (
 )
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.messages import CameraStatus
-from mocapd.service.fitness import fitness_of
 from mocapd.service.health import lost_reason_text, slowness_text
 from mocapd.service.open_outputs import OpenOutputs
+from mocapd.service.readiness import readiness_of
 from mocapd.service.service import Service
 from mocapd.session.session import Session
 from mocapd.types import Tracking
 
-SILENT = "silent"  # a camera that counts as live and sends nothing
+SILENT = "silent"  # a live camera that sends nothing
 
 
 def status_report(
     service: Service, last_trouble: Trouble | None, preparing: str = ""
 ) -> StatusReport:
-    """How the service fares now, and what is still prepared beside it; from any thread."""
+    """The service's status; thread-safe. preparing: remaining preparations."""
     snapshot, session = service.snapshot(), service.session
     metrics, cameras = snapshot.metrics, service.camera_messages()
     return StatusReport(
@@ -38,22 +38,24 @@ def status_report(
         pid=os.getpid(),
         instance=service.instance,
         state_dir=str(service.config.state_dir.resolve()),
-        state=fitness_of(snapshot),
+        state=readiness_of(snapshot),
         tracker=metrics.tracker or session.tracker.name,
         tracking=metrics.tracking.value,
         rate_hz=metrics.rate_hz,
-        latency_median_ms=_measured(metrics.latency_ms.median),
-        latency_p95_ms=_measured(metrics.latency_ms.p95),
+        latency_median_ms=_finite(metrics.latency_ms.median),
+        latency_p95_ms=_finite(metrics.latency_ms.p95),
         published=metrics.published,
         dropped=metrics.sets_dropped,
         uptime_s=service.uptime_s,
-        cameras=tuple(_camera(one, snapshot.cameras.get(one.camera)) for one in cameras),
+        cameras=tuple(
+            _camera(message, snapshot.cameras.get(message.camera)) for message in cameras
+        ),
         outputs=_outputs(snapshot.outputs),
         calibration=_calibration(session),
         last_trouble=last_trouble,
         lost_reason=lost_reason_text(metrics.lost_reason),
         effort=metrics.effort.value,
-        lag_median_ms=_measured(metrics.lag_ms.median),
+        lag_median_ms=_finite(metrics.lag_ms.median),
         preparing=preparing,
         slowness=slowness_text(metrics.slowness),
     )
@@ -62,7 +64,7 @@ def status_report(
 def starting_report(
     config: Config, outputs: OpenOutputs, last_trouble: Trouble | None, preparing: str = ""
 ) -> StatusReport:
-    """The same while the outputs are open, and the first session is still prepared; `preparing`: where that stands."""
+    """The status during the preparation of the first session, with open outputs; `preparing`: its progress."""
     return StatusReport(
         version=mocapd.__version__,
         pid=os.getpid(),
@@ -86,8 +88,7 @@ def starting_report(
 
 def _outputs(statuses: Mapping[str, SinkStatus]) -> tuple[OutputReport, ...]:
     return tuple(
-        OutputReport(name, one.sent, one.refused, one.listeners, one.detail)
-        for name, one in statuses.items()
+        OutputReport(name, s.sent, s.refused, s.listeners, s.detail) for name, s in statuses.items()
     )
 
 
@@ -119,5 +120,5 @@ def _unix_s(when: datetime | None) -> float | None:
     return (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp()
 
 
-def _measured(value: float) -> float | None:
+def _finite(value: float) -> float | None:
     return None if math.isnan(value) else value

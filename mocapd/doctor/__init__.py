@@ -1,1 +1,1 @@
-"""`mocapd doctor`: what of this machine may keep mocapd from tracking, and the line that mends it."""
+"""`mocapd doctor`: finds obstacles to tracking on this machine, with the command that fixes each."""

@@ -1,4 +1,4 @@
-"""Every check, in the order in which it is told."""
+"""Runs all checks, in the order of the output."""
 
 from mocapd.doctor.checks.calibration_checks import check_calibration
 from mocapd.doctor.checks.camera_checks import check_bandwidth, check_rights, check_webcams
@@ -8,26 +8,26 @@ from mocapd.doctor.checks.system_checks import (
     check_config,
     check_daemons,
     check_libraries,
+    check_ownership,
     check_preparation,
     check_processor,
-    check_whose,
 )
 from mocapd.doctor.facts import Facts
 from mocapd.doctor.finding import Finding
 
 
 def examine(facts: Facts) -> tuple[Finding, ...]:
-    """A line for each thing that was looked at."""
+    """The findings of all checks."""
     return (
         check_config(facts.config),
         *check_daemons(facts.daemons),
-        *check_whose(facts.user, facts.states),
+        *check_ownership(facts.user, facts.states),
         *check_rights(facts.user, facts.cameras),
         *check_webcams(facts.cameras, facts.daemons),
         *check_bandwidth(facts.cameras),
         check_calibration(facts.calibration),
         *check_ports(facts.ports, facts.daemons),
-        *(check_folder(one) for one in facts.folders),
+        *(check_folder(folder) for folder in facts.folders),
         *check_processor(facts.processor),
         check_clock(facts.clock),
         *check_libraries(facts.libraries),

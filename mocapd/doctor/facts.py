@@ -1,4 +1,4 @@
-"""What the doctor judges: facts of the machine, the configuration and the calibration."""
+"""Records of facts about the machine, the configuration and the calibration, input of the checks."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from mocapd.wizard.draft import DraftCamera
 
 @dataclass(frozen=True, slots=True)
 class FactTrouble:
-    """What a MocapdError says."""
+    """Text and fix of a MocapdError."""
 
     what: str
     fix: str
@@ -20,7 +20,7 @@ class FactTrouble:
 
 @dataclass(frozen=True, slots=True)
 class ConfigFacts:
-    """file: None when there is none; trouble: why it cannot be used; then what is built in was looked at."""
+    """file: None without one; trouble: why it is invalid, in which case the built-in values are examined."""
 
     file: Path | None
     trouble: FactTrouble | None = None
@@ -28,7 +28,7 @@ class ConfigFacts:
 
 @dataclass(frozen=True, slots=True)
 class UserFacts:
-    """groups: names of those that this process is in; video: whether the system has a group of that name."""
+    """groups: names of this process's groups; has_video_group: whether the group `video` exists."""
 
     name: str
     is_root: bool
@@ -38,8 +38,8 @@ class UserFacts:
 
 @dataclass(frozen=True, slots=True)
 class StateFacts:
-    """Folders in which calibrations are kept. own: what is looked at; of_services: what services of this machine have
-    in its place, told to root alone."""
+    """Folders of calibrations. own: the examined one; of_services: those of this machine's services, visible to root
+    only."""
 
     own: Path
     of_services: tuple[Path, ...] = ()
@@ -47,8 +47,8 @@ class StateFacts:
 
 @dataclass(frozen=True, slots=True)
 class CameraFacts:
-    """nodes: the machine's; asked: webcams and others of configuration or calibration; crowded: buses that do not
-    carry those of them that are plugged in."""
+    """nodes: the machine's; asked: cameras of configuration or calibration; crowded: buses overloaded by the plugged ones
+    among them."""
 
     nodes: tuple[CameraInfo, ...]
     asked: tuple[DraftCamera, ...]
@@ -57,7 +57,7 @@ class CameraFacts:
 
 @dataclass(frozen=True, slots=True)
 class PortFacts:
-    """A TCP port of this machine that the configuration wants. holder: who has it now; empty: nobody."""
+    """A TCP port that the configuration needs. holder: the program that uses it; empty without one."""
 
     key: str
     port: int
@@ -66,8 +66,8 @@ class PortFacts:
 
 @dataclass(frozen=True, slots=True)
 class FolderFacts:
-    """key: of the configuration; trouble: why it cannot be written to, or is not believed; open_to_others: somebody
-    else may look into it; free_bytes: on its disk, None where that cannot be told; holds_little: only small files."""
+    """key: of the configuration; trouble: why it is not writable or not trusted; open_to_others: readable by other users;
+    free_bytes: on its disk, None if unknown; holds_little: only small files."""
 
     key: str
     path: Path
@@ -79,8 +79,8 @@ class FolderFacts:
 
 @dataclass(frozen=True, slots=True)
 class CalibrationFacts:
-    """path: None without any; trouble: why it cannot be used; age_s: since it was made [s]; rms_px, play_area_cm: as
-    it was saved, None where not known; room_of: the cameras in it."""
+    """path: None without one; trouble: why it is unusable; age_s: since its creation [s]; rms_px, play_area_cm: saved
+    errors, None if unknown; cameras: their number."""
 
     path: Path | None
     trouble: FactTrouble | None = None
@@ -92,7 +92,7 @@ class CalibrationFacts:
 
 @dataclass(frozen=True, slots=True)
 class ProcessorFacts:
-    """cores: that this process may use; governors: how many cores have each; driver: of the frequency."""
+    """cores: available to this process; governors: number of cores by governor; driver: of frequency scaling."""
 
     cores: int
     governors: Mapping[str, int] = field(default_factory=dict)
@@ -101,7 +101,7 @@ class ProcessorFacts:
 
 @dataclass(frozen=True, slots=True)
 class ClockFacts:
-    """now_unix_s: the wall clock; built_unix_s: when this mocapd was put here; synchronised: None where nobody tells."""
+    """now_unix_s: the wall clock; built_unix_s: installation time of mocapd; synchronised: None if unknown."""
 
     now_unix_s: float
     built_unix_s: float
@@ -110,8 +110,8 @@ class ClockFacts:
 
 @dataclass(frozen=True, slots=True)
 class LibraryFacts:
-    """python: its version; versions: of what was found; broken: why a library cannot be imported; wants_vrchat: the
-    configuration looks for VRChat in the network; vrchat_fix: what installs the extra for it, empty where it is there."""
+    """python: its version; versions: of importable libraries; broken: import errors; wants_vrchat: the configuration
+    needs VRChat's discovery; vrchat_fix: command that installs its extra, empty if installed."""
 
     python: str
     versions: Mapping[str, str]
@@ -122,7 +122,7 @@ class LibraryFacts:
 
 @dataclass(frozen=True, slots=True)
 class PreparationFacts:
-    """Whether kernels and pose database of this version are there (`done`), or are being made now (`under_way`)."""
+    """Whether kernels and pose database of this version are cached (`done`) or in preparation (`under_way`)."""
 
     done: bool
     under_way: bool = False
@@ -130,7 +130,7 @@ class PreparationFacts:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """Everything that is looked at."""
+    """All facts."""
 
     config: ConfigFacts
     daemons: tuple[StatusReport, ...]

@@ -1,11 +1,11 @@
-"""One line of the doctor's: what was looked at, whether it is well, and what would mend it."""
+"""One result of the doctor: subject, verdict and fix."""
 
 from dataclasses import dataclass
 from enum import StrEnum
 
 
 class Verdict(StrEnum):
-    """warn: it works, or may; bad: it will not."""
+    """warn: it works or may work; bad: it will not work."""
 
     OK = "ok"
     WARN = "warn"
@@ -14,7 +14,7 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """about: a word, such as `webcam`; fix: what to do or to type, empty where all is well."""
+    """about: the subject, such as `webcam`; fix: action or command, empty for OK."""
 
     verdict: Verdict
     about: str
@@ -23,15 +23,15 @@ class Finding:
 
 
 def ok(about: str, what: str) -> Finding:
-    """All is well."""
+    """A positive finding."""
     return Finding(Verdict.OK, about, what)
 
 
 def warn(about: str, what: str, fix: str) -> Finding:
-    """It works, or may."""
+    """A warning: it works or may work."""
     return Finding(Verdict.WARN, about, what, fix)
 
 
 def bad(about: str, what: str, fix: str) -> Finding:
-    """It will not work."""
+    """A failure: it will not work."""
     return Finding(Verdict.BAD, about, what, fix)

@@ -1,1 +1,1 @@
-"""A small computer with webcams: their pictures to a daemon on another machine."""
+"""A camera node: sends the pictures of a small computer's webcams to a daemon on another machine."""

@@ -1,4 +1,4 @@
-"""Who may do what at a camera node: everybody who is let in may look, the paired daemon alone may set cameras."""
+"""Access control of a camera node: every client may receive pictures, only the paired daemon may set cameras."""
 
 from typing import Any
 
@@ -10,17 +10,17 @@ from mocapd.outputs.zenoh import zenoh_config
 
 
 def check_pairing(zenoh: zenoh_config.Params, node: Params) -> None:
-    """Raises ConfigError where nobody could tell who is the paired one."""
+    """Raises ConfigError where the node could not identify the paired daemon."""
     if node.paired_user and zenoh.connect:
         raise ConfigError(
-            "behind a router nobody can be told apart",
+            "behind a router clients cannot be identified",
             "node.paired_user",
             "leave it empty; let the router's access control guard mocapd-camera/v1/*/*/control, and set"
             " node.router_decides = true",
         )
     if node.paired_user and not (zenoh.password_file or zenoh.tls_require_client):
         raise ConfigError(
-            f"nobody can show to be {node.paired_user!r}",
+            f"no client can authenticate as {node.paired_user!r}",
             "node.paired_user",
             "set zenoh.password_file with that user, or zenoh.tls_require_client",
         )
@@ -33,7 +33,7 @@ def check_pairing(zenoh: zenoh_config.Params, node: Params) -> None:
 
 
 def takes_orders(node: Params) -> bool:
-    """Whether anybody may set its cameras."""
+    """True if some client may set its cameras."""
     return bool(node.paired_user) or node.router_decides
 
 
@@ -48,7 +48,7 @@ def node_session_config(zenoh: zenoh_config.Params, node: Params, name: str) -> 
 
 def _access(zenoh: zenoh_config.Params, node: Params, name: str) -> dict[str, Any]:
     keys = [camera_wire.picture(name, ANY), camera_wire.alive(name, ANY)]
-    # of any node: whoever looks for cameras does not know our name
+    # of any node: a search for cameras does not know our name
     questions = [camera_wire.state(ANY, ANY), camera_wire.clock(name)]
     orders = [camera_wire.control(name, ANY)]
     rules: list[dict[str, Any]] = [

@@ -1,4 +1,4 @@
-"""One camera of a node: the newest picture goes out as the JPEG that it came in, or encoded once."""
+"""One camera of a node: sends the newest picture as the camera's JPEG, or encodes it once."""
 
 import threading
 from collections.abc import Callable
@@ -13,21 +13,21 @@ from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import CameraState, PictureStamp
 from mocapd.capture.webcam.control_lock import Lockable
 from mocapd.clock import NS_PER_S, monotonic_ns
-from mocapd.node.imperfections import Imperfections, Way
+from mocapd.node.network_emulation import Imperfections, NetworkLink
 from mocapd.node.node_controls import ControlOrders
 from mocapd.outputs.instance import chunk
 from mocapd.pipeline.latest import Latest
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.types import Frame
 
-_HEARD_NS = NS_PER_S // 10  # who was heard is taken to be for so long
+_SUBSCRIBED_NS = NS_PER_S // 10  # lifetime of the cached answer whether a subscriber exists
 _REASON = 400  # characters
 
 
 class NodeCamera:
-    """From `start` to `stop`, both called by its owner, as is `beat`; the rest from any thread.
+    """The owner calls `start`, `update_liveliness` and `stop`; the rest is thread-safe.
 
-    While nobody listens nothing is encoded or sent. `sent` counts the pictures handed to Zenoh; name: as in the keys.
+    Without a subscriber nothing is encoded or sent. `sent` counts pictures passed to Zenoh; name: as in the keys.
     """
 
     def __init__(
@@ -38,14 +38,14 @@ class NodeCamera:
         can_set: bool,
         quality: int,
         imperfections: Imperfections,
-        way: Way,
+        link: NetworkLink,
         died: Callable[[BaseException], None],
     ) -> None:
-        """can_set: whether there is somebody whose orders are taken; way: what it sends goes this way."""
+        """can_set: whether a client may set the camera; link: carries its messages."""
         self.name = chunk(camera.source.name)
         self.sent = 0
         self._node, self._run, self._quality = node, run, quality
-        self._imperfections, self._way, self._died = imperfections, way, died
+        self._imperfections, self._link, self._died = imperfections, link, died
         self._newest: Latest[Frame] = Latest()
         self._size_px = camera.size_px
         self._capture = CaptureThread(camera.source, self, died, camera.expected_hz)
@@ -55,16 +55,16 @@ class NodeCamera:
         self._session: zenoh.Session | None = None
         self._publisher: zenoh.Publisher | None = None
         self._token: zenoh.LivelinessToken | None = None
-        self._heard_until_ns = 0
+        self._subscribed_until_ns = 0
 
     def start(self, session: zenoh.Session, opened: ExitStack) -> None:
-        """Begin, in this session, until `opened` is closed."""
+        """Starts in this session, until `opened` is closed."""
         self._session = session
         self._publisher = opened.enter_context(
             session.declare_publisher(
                 camera_wire.picture(self._node, self.name),
                 encoding=zenoh.Encoding.IMAGE_JPEG,
-                # a picture that cannot leave now is worthless in a moment: drop it, never wait
+                # a late picture is worthless: drop it, never wait
                 congestion_control=zenoh.CongestionControl.DROP,
                 priority=zenoh.Priority.INTERACTIVE_LOW,
                 express=True,
@@ -88,15 +88,15 @@ class NodeCamera:
         self._newest.put(frame)
 
     def look_again(self) -> None:
-        """A camera was plugged in, maybe this one."""
+        """Ends the pause before reopening, as some camera was plugged in."""
         self._capture.look_again()
 
     def renew(self, why: str) -> None:
-        """Open it again, although it has not failed."""
+        """Reopens the camera although it has not failed."""
         self._capture.renew(why)
 
-    def beat(self) -> None:
-        """Several times a second: the token is there while the camera delivers, and a driver that hangs is left alone."""
+    def update_liveliness(self) -> None:
+        """Declares the liveliness token while the camera delivers; runs its watchdog. Call several times a second."""
         self._capture.watch()
         session, status = self._session, self._capture.status()
         if session is None:
@@ -110,12 +110,12 @@ class NodeCamera:
 
     @property
     def state(self) -> CameraState:
-        """How it fares."""
+        """The state for the wire."""
         status = self._capture.status()
         return CameraState(
             node=self._node,
             camera=self.name,
-            state="lost" if status.is_silent else status.state.told,  # type: ignore[arg-type]
+            state="lost" if status.is_silent else status.state.wire_name,  # type: ignore[arg-type]
             reason=status.trouble[:_REASON],
             size_px=self._size_px,
             rate_hz=min(status.fps_hz, 1e4),
@@ -125,17 +125,17 @@ class NodeCamera:
 
     @property
     def is_over(self) -> bool:
-        """Whether it was a recording, and has ended."""
+        """True for a recording that has ended."""
         return self._capture.status().state is CaptureState.ENDED
 
     def let_go(self) -> None:
-        """First pass of stopping; never blocks."""
+        """First phase of stopping; never blocks."""
         self._session = None
         self._capture.let_go()
         self._newest.close()
 
     def stop(self, timeout_s: float) -> None:
-        """Wait for its threads, for so long."""
+        """Joins its threads, for at most `timeout_s` [s]."""
         self._capture.stop(timeout_s)
         if self._thread.ident is not None:
             self._thread.join(0.2)
@@ -149,19 +149,19 @@ class NodeCamera:
         try:
             while not self._newest.closed:
                 frame = self._newest.get()
-                if frame is not None and self._is_heard():
+                if frame is not None and self._has_subscriber():
                     self._send(frame)
-        except BaseException as error:  # nobody else watches this thread
+        except BaseException as error:  # reported to the owner
             self._died(error)
             raise
 
-    def _is_heard(self) -> bool:
+    def _has_subscriber(self) -> bool:
         now_ns, publisher = monotonic_ns(), self._publisher
-        if now_ns < self._heard_until_ns:
+        if now_ns < self._subscribed_until_ns:
             return True
         if publisher is None or not publisher.matching_status.matching:  # type: ignore[attr-defined]
             return False
-        self._heard_until_ns = now_ns + _HEARD_NS
+        self._subscribed_until_ns = now_ns + _SUBSCRIBED_NS
         return True
 
     def _send(self, frame: Frame) -> None:
@@ -177,7 +177,7 @@ class NodeCamera:
         publisher = self._publisher
         if publisher is None:
             return
-        self._way.send(lambda: publisher.put(data, attachment=stamp))
+        self._link.send(lambda: publisher.put(data, attachment=stamp))
         self.sent += 1
 
     def _answer(self, query: zenoh.Query) -> None:

@@ -1,4 +1,4 @@
-"""The controls of a node's webcam, set by the paired daemon: one order after the other, each within its limits."""
+"""Executes orders of the paired daemon for a webcam's controls, one after the other, within their ranges."""
 
 import queue
 import threading
@@ -10,16 +10,16 @@ import msgspec
 import zenoh
 
 from mocapd.capture.remote import camera_wire
-from mocapd.capture.remote.camera_wire import Done, Kept, Order
+from mocapd.capture.remote.camera_wire import Done, LockedControls, Order
 from mocapd.capture.webcam.camera_controls import ControlDevice
 from mocapd.capture.webcam.control_lock import Lockable, as_held, restore
 from mocapd.errors import MalformedError, UnavailableError
 
-_MOST_WAITING = 16  # orders: a wizard waits for each before it gives the next
+_MOST_WAITING = 16  # orders; a wizard waits for each answer
 
 
 class ControlOrders:
-    """Takes orders from `attach` until what that was given is closed. Who may give them is not decided here."""
+    """Takes orders from `attach` until its `opened` is closed. `node_access` decides the permission."""
 
     def __init__(self, source: Lockable) -> None:
         self._source, self._own = source, source.settings
@@ -33,7 +33,7 @@ class ControlOrders:
         opened: ExitStack,
         died: Callable[[BaseException], None],
     ) -> None:
-        """Answer on this key."""
+        """Answers orders on this key."""
 
         def work() -> None:
             try:
@@ -43,11 +43,11 @@ class ControlOrders:
                         query.reply(key, camera_wire.encode(done), encoding=camera_wire.ENCODING)
             except zenoh.ZError:
                 return  # the session was closed while the camera was set
-            except BaseException as error:  # nobody else watches this thread
+            except BaseException as error:  # reported to the owner
                 died(error)
                 raise
 
-        # a driver may take its time, and Zenoh's own thread has none
+        # a driver may block, Zenoh's own thread must not
         thread = threading.Thread(target=work, name="orders", daemon=True)
         thread.start()
         opened.callback(self._end, thread)
@@ -55,7 +55,7 @@ class ControlOrders:
         opened.enter_context(session.declare_queryable(key, handler))
 
     def done(self, data: bytes) -> Done:
-        """What came of an order, whatever it says."""
+        """Executes an encoded order; the result reports any trouble."""
         try:
             order = camera_wire.decode(data, Order)
         except MalformedError as error:
@@ -89,9 +89,9 @@ class ControlOrders:
             return Done(trouble=f"{order.control} takes {low} to {high}, not {order.value}")
         return Done(value=device.write(order.control, order.value))
 
-    def _keep(self, kept: Kept) -> Done:
-        """At each opening, and now if it is open. What is not given stays as the node is configured."""
-        given = msgspec.structs.asdict(kept).items()
+    def _keep(self, locked: LockedControls) -> Done:
+        """Sets controls now and at each opening; missing ones have the node's configured value."""
+        given = msgspec.structs.asdict(locked).items()
         own = self._own.controls
         controls = replace(own, **{name: value for name, value in given if value is not None})
         settings = self._source.settings

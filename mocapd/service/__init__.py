@@ -1,1 +1,1 @@
-"""The composition root: cameras, pipeline and outputs of a running daemon."""
+"""The composition root of a daemon: cameras, pipeline and outputs."""

@@ -1,4 +1,4 @@
-"""Records the bodies of a running service into a file, for the page's button; `mocapd record` is a program of its own."""
+"""Records the bodies of a running service to a file, for the page's Record button; `mocapd record` is independent."""
 
 import contextlib
 import queue
@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import Self
 
-from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.clock import monotonic_ns, unix_from_monotonic_ns
 from mocapd.errors import CannotCreateError
 from mocapd.outputs.from_body import skeleton_frame
@@ -16,25 +16,27 @@ from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWrite
 from mocapd.pipeline.body_hub import BodyHub, BodySample
 from mocapd.types import Skeleton
 
-_MOST_WAITING = 600  # bodies, of ten seconds at 60 Hz: a disk that is slower loses the newest
+_MOST_WAITING = 600  # queued bodies, ten seconds at 60 Hz; beyond that a slow disk loses the newest
 _LOOK_S = 0.1
 
 
 class BodyRecorder:
-    """Records from `__enter__` to `__exit__`; the rest may be asked from any thread."""
+    """Records from `__enter__` to `__exit__`; the properties are thread-safe."""
 
-    def __init__(self, bodies: BodyHub, path: Path, known: RecordedKnown, instance: str) -> None:
-        """Make the file, which only its owner may read. Raises CannotCreateError."""
-        self._bodies, self._known, self._instance = bodies, known, instance
+    def __init__(
+        self, bodies: BodyHub, path: Path, metadata: RecordingMetadata, instance: str
+    ) -> None:
+        """Creates the file, readable by its owner only. Raises CannotCreateError."""
+        self._bodies, self._metadata, self._instance = bodies, metadata, instance
         self._writer = RecordingWriter(path, RecordingParams(private=True), monotonic_ns())
         self._waiting: queue.Queue[BodySample] = queue.Queue(_MOST_WAITING)
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name="page-recording", daemon=True)
         self._began_s = time.monotonic()
-        self._skeleton: Skeleton | None = None  # as it was told last
+        self._skeleton: Skeleton | None = None  # the last one written
         self._seq = 0
-        self.lost = 0  # bodies that the disk was too slow for
-        self.trouble = ""  # why nothing is written any more
+        self.lost = 0  # bodies dropped because of a slow disk
+        self.trouble = ""  # why writing has stopped
 
     def __enter__(self) -> Self:
         self._thread.start()
@@ -71,7 +73,7 @@ class BodyRecorder:
     def _run(self) -> None:
         try:
             with self._writer:
-                self._writer.attach(self._known, time.time_ns())
+                self._writer.attach(self._metadata, time.time_ns())
                 while not (self._over.is_set() and self._waiting.empty()):
                     with contextlib.suppress(queue.Empty):
                         self._write(self._waiting.get(timeout=_LOOK_S))

@@ -1,8 +1,8 @@
-"""Watches whether each camera is the one that its calibration is of, and still where it was calibrated.
+"""Watches that each camera is the calibrated one and still at its calibrated place.
 
-One memory of the room for each camera (`landmark_memory.py`) serves all: what identical webcams are known by before their
-frames are used, what a bump is measured against, and which cameras are swapped. The views of people are compared
-beside it (`view_watch.py`). What is wrong is logged once, and is a notice of the cameras concerned.
+One memory of the room per camera (`landmark_memory.py`) serves three checks: identification of identical webcams before
+their frames are used, detection of bumps, and detection of swapped cameras. `view_watch.py` compares the views of
+people. Each trouble is logged once and becomes a notice of its cameras.
 """
 
 import logging
@@ -24,13 +24,12 @@ from mocapd.types import Bytes, Frame, Rig
 
 _log = logging.getLogger(__name__)
 
-_KEPT_NS = 600 * NS_PER_S  # how often the rooms of identical webcams are kept for the next start
+_SAVE_NS = 600 * NS_PER_S  # interval of saving the rooms of identical webcams for the next start
 
 
 class CameraWatch:
-    """Stands between a hub and what uses the frames. `put` and `went` are called by capture threads, `look` by one other
-    thread, `start` and `stop` by the owner; anybody may ask for the rest. A room that was calibrated again gets another
-    watch."""
+    """Filters frames between a hub and their consumers. Capture threads call `put` and `went`, one other thread calls
+    `look`, the owner calls `start` and `stop`; the rest is thread-safe. A new calibration needs a new instance."""
 
     def __init__(
         self,
@@ -40,22 +39,22 @@ class CameraWatch:
         rooms: RoomMemory | None = None,
         stature_m: float | None = None,
     ) -> None:
-        """rig: without one nothing is watched; onwards: takes the frames that may be used; rooms: of earlier runs."""
+        """rig: None disables all checks; onwards: receives the admitted frames; rooms: memory of earlier runs."""
         sources = list(sources)
         calibrated = {camera.name: camera for camera in rig.cameras} if rig else {}
         self._cameras = {
-            one.name: calibrated[one.name] for one in sources if one.name in calibrated
+            source.name: calibrated[source.name] for source in sources if source.name in calibrated
         }
         groups = identical_groups(sources, self._cameras)
         for group in groups:
             _log.info(
-                "%s have the same vid:pid:serial, and are told apart by their USB ports: keep each in its own",
+                "%s have the same vid:pid:serial, and only their USB ports distinguish them: keep each in its own",
                 " and ".join(group),
             )
         earlier = rooms.read(self._cameras) if rooms is not None and groups else {}
         earlier = {name: earlier[name] for group in groups for name in group if earlier.get(name)}
         self._onwards, self._rooms = onwards, rooms
-        self._kept_ns: int | None = None
+        self._saved_ns: int | None = None
         self._memories = {
             name: LandmarkMemory(camera, earlier.get(name, ()))
             for name, camera in self._cameras.items()
@@ -72,15 +71,15 @@ class CameraWatch:
         self._identical = IdenticalCameras(groups, earlier)
 
     def start(self) -> None:
-        """Begin to compare views; returns at once."""
+        """Starts comparing views; returns at once."""
         self._views.start()
 
     def stop(self) -> None:
-        """The comparison ends by itself soon; never blocks."""
+        """Signals the comparison to end; never blocks."""
         self._views.stop()
 
     def put(self, frame: Frame) -> None:
-        """Hand in a frame; that of a webcam that may be another one goes no further."""
+        """Takes a frame; drops it while the identity of its webcam is in doubt."""
         self._views.put(frame)
         with self._lock:
             self._newest[frame.camera] = frame
@@ -95,12 +94,13 @@ class CameraWatch:
             self._identical.went(camera)
 
     def notice(self, camera: str) -> str:
-        """What people must do about a camera; empty when nothing."""
+        """The trouble with a camera and its fix, for users; empty without trouble."""
         with self._lock:
             notice = self._identical.notice(camera)
         if notice:
             return notice
-        notices = [str(one) for one in _not_exchanged(self._compared) if camera in one.cameras]
+        findings = _not_exchanged(self._compared)
+        notices = [str(finding) for finding in findings if camera in finding.cameras]
         if self._swapped.is_swapped(camera):
             shown = self._swapped.partner(camera)
             notices.insert(
@@ -111,7 +111,7 @@ class CameraWatch:
         return "; ".join(notices)
 
     def mounting(self, camera: str) -> Mounting:
-        """As last seen; `unknown` for a camera without calibration, or that may be another one."""
+        """The last result; `unknown` without calibration or while the camera's identity is in doubt."""
         if self._swapped.is_swapped(camera):
             return Mounting.SWAPPED
         with self._lock:
@@ -122,12 +122,12 @@ class CameraWatch:
 
     @property
     def off_m(self) -> float:
-        """By how much the views of people contradict each other for good [m]."""
+        """Lasting disagreement of the views of people [m]."""
         return self._views.off_m
 
     def look(self) -> None:
-        """Call it about once a second: a picture of each camera takes some milliseconds, the points of two cameras a fifth of
-        a second in the first minute."""
+        """Runs the checks; call it about once a second. Takes some milliseconds per camera, and in the first minute a fifth
+        of a second per pair of cameras."""
         self._take_comparison()
         newest: dict[str, Frame] = {}
         for name, camera in self._cameras.items():
@@ -135,7 +135,7 @@ class CameraWatch:
                 frame = self._newest.get(name)
                 trust, losses = self._identical.trust(name), self._identical.losses(name)
             if frame is None or frame.pixels.shape[1::-1] != camera.size_px:
-                continue  # of another size: the tracker says what is wrong
+                continue  # the tracker reports a wrong size
             newest[name] = frame
             if frame is self._looked_at.get(name) and trust is Trust.KNOWN:
                 continue
@@ -147,7 +147,7 @@ class CameraWatch:
         self._swapped.compare_points(newest)
         self._forget_misplaced()
         self._warn_of_swapped()
-        self._keep_rooms(max((one.t_ns for one in newest.values()), default=0))
+        self._save_rooms(max((frame.t_ns for frame in newest.values()), default=0))
 
     def _newest_of(self, camera: str) -> Frame | None:
         with self._lock:
@@ -175,8 +175,8 @@ class CameraWatch:
         self._swapped.shows_room_of(name, other)
 
     def _forget_misplaced(self) -> None:
-        """A camera that contradicts its calibration, though it was taken for itself, remembers the wrong room: it remembers
-        nothing until it is back."""
+        """Clears the memory of cameras that contradict their calibration despite a positive identification: it holds the
+        wrong room."""
         with self._lock:
             now = {
                 name
@@ -190,14 +190,14 @@ class CameraWatch:
                 self._bumps[name] = BumpWatch(self._memories[name])
                 self._swapped.shows_room_of(name, None)
             with self._lock:
-                self._identical.misplaced(name, name in now)
+                self._identical.set_misplaced(name, name in now)
         if self._rooms is not None and now.intersection(self._identical.names) - self._misplaced:
-            self._kept_ns = None
+            self._saved_ns = None
             self._rooms.write(self._cameras, {})
         self._misplaced = now
 
     def _identify(self, name: str, frame: Frame, losses: int) -> None:
-        """Judge a webcam that may be an identical one, if it was not unplugged meanwhile."""
+        """Identifies a webcam in doubt, unless it was unplugged meanwhile."""
         memory, group = self._memories[name], self._identical.others(name)
         own = memory.likeness(frame.pixels) if memory.views else None
         other, likeness = self._likeliest(frame.pixels, group)
@@ -216,7 +216,7 @@ class CameraWatch:
             _log.info("%s: is itself, by the room that it sees", name)
 
     def _likeliest(self, pixels: Bytes, among: Iterable[str]) -> tuple[str, float]:
-        """The camera whose room a picture is most like, and how much."""
+        """The camera whose room is most similar to a picture, and the similarity."""
         return max(
             ((name, self._memories[name].likeness(pixels)) for name in sorted(among)),
             key=lambda pair: pair[1],
@@ -229,17 +229,17 @@ class CameraWatch:
             return
         self._compared = result
         self._swapped.take_views(
-            one.cameras for one in result.findings if one.mistake is Mistake.EXCHANGED
+            finding.cameras for finding in result.findings if finding.mistake is Mistake.EXCHANGED
         )
-        known = {(one.mistake, one.cameras) for one in before.findings}
-        for one in _not_exchanged(result):
-            if (one.mistake, one.cameras) not in known:
-                _log.warning("%s", one)
+        logged = {(finding.mistake, finding.cameras) for finding in before.findings}
+        for finding in _not_exchanged(result):
+            if (finding.mistake, finding.cameras) not in logged:
+                _log.warning("%s", finding)
         if before.findings and not result.findings and result.looked:
             _log.info("what the cameras show agrees with their calibration again")
 
     def _warn_of_swapped(self) -> None:
-        """Once of each two, and once when it is over; what `notice` says of identical webcams is logged already."""
+        """Logs each new pair once, and once the end; notices of identical webcams are logged elsewhere."""
         swapped = [name for name in self._cameras if self._swapped.is_swapped(name)]
         now = {_in_order(name, self._swapped.partner(name)) for name in swapped}
         for first, second in sorted(now - self._warned, key=str):
@@ -259,17 +259,17 @@ class CameraWatch:
         with self._lock:
             return self._identical.trust(camera) is Trust.DOUBTED
 
-    def _keep_rooms(self, now_ns: int) -> None:
-        """Of identical webcams, for the next start: the first views at once, then now and then."""
+    def _save_rooms(self, now_ns: int) -> None:
+        """Saves the rooms of identical webcams for the next start: the first views at once, then every _SAVE_NS."""
         if self._rooms is None or not self._identical.names:
             return
-        if self._kept_ns is not None and now_ns - self._kept_ns <= _KEPT_NS:
+        if self._saved_ns is not None and now_ns - self._saved_ns <= _SAVE_NS:
             return
         memories = {name: self._memories[name] for name in self._identical.names}
         views = {name: memory.views for name, memory in memories.items()}
         if all(views.values()) and any(memory.has_begun for memory in memories.values()):
-            self._kept_ns = now_ns
-            # a disk may be slow, and the thread that looks also gives signs of life
+            self._saved_ns = now_ns
+            # in a thread: a disk may be slow, and the calling thread also sends the watchdog's heartbeat
             threading.Thread(
                 target=self._rooms.write, args=(self._cameras, views), name="rooms", daemon=True
             ).start()
@@ -280,4 +280,4 @@ def _in_order(name: str, other: str | None) -> tuple[str, str | None]:
 
 
 def _not_exchanged(result: CheckResult) -> list[CaptureFinding]:
-    return [one for one in result.findings if one.mistake is not Mistake.EXCHANGED]
+    return [finding for finding in result.findings if finding.mistake is not Mistake.EXCHANGED]

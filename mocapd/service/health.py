@@ -1,4 +1,4 @@
-"""From the state of threads and sinks to the messages that late joiners ask for."""
+"""Builds the state messages, which late joiners query, from the state of threads and sinks."""
 
 import math
 import os
@@ -16,7 +16,7 @@ from mocapd.session.camera_inputs import CameraInput
 from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
 
-# by effort: what is wrong, and what can be done about it
+# by effort: the trouble and its fix
 EFFORT_TROUBLE: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         Effort.SAVING.value: (
@@ -39,7 +39,7 @@ def health_message(
     outputs: dict[str, SinkStatus],
     detail: str = "",
 ) -> Health:
-    """How the daemon fares; figures that nobody measured yet are 0."""
+    """The daemon's health; figures without a measurement are 0."""
     return Health(
         instance=instance,
         version=mocapd.__version__,
@@ -89,11 +89,11 @@ def camera_message(
     metrics: CameraMetrics,
     mounting: Mounting,
 ) -> CameraStatus:
-    """How one camera fares."""
+    """The status of one camera."""
     return CameraStatus(
         instance=instance,
         camera=status.camera,
-        state=status.state.told,
+        state=status.state.wire_name,
         detail=status.trouble,
         source=camera.spec,
         identity=camera.identity,
@@ -107,11 +107,11 @@ def camera_message(
 
 
 def gone_message(instance: str, name: str, camera: CameraInput) -> CameraStatus:
-    """That a camera takes no part any more."""
+    """The last status of a camera that is no longer configured."""
     return CameraStatus(
         instance=instance,
         camera=name,
-        state=CaptureState.ENDED.told,
+        state=CaptureState.ENDED.wire_name,
         detail="no longer configured",
         source=camera.spec,
         identity="",

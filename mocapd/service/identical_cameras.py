@@ -1,8 +1,8 @@
-"""Identical webcams without serial numbers: which of them may take part after they were unplugged together.
+"""Identical webcams without serial numbers: which of them are admitted after they were unplugged together.
 
-Two of one model that were swapped are found as if nothing had happened, each with the other's calibration. So the frames
-of those that were away together are held back until each is known by the room that it shows. Where that is not its
-own, people are asked.
+Swapped webcams of one model open without an error, each with the other's calibration. So frames of webcams that were
+unplugged together are held back until the view of the room identifies each. Where the view contradicts, a notice asks
+the user.
 """
 
 from collections.abc import Collection, Iterable
@@ -14,32 +14,32 @@ from mocapd.capture.base import Pluggable, Source
 
 
 class Trust(StrEnum):
-    """Whether a webcam is the one that its port says."""
+    """Confidence that a webcam is the one of its USB port."""
 
-    KNOWN = "known"  # by what it shows, or because nothing speaks against it
-    BELIEVED = "believed"  # since the start, though it does not show what it showed before that
-    DOUBTED = "doubted"  # it takes no part
+    KNOWN = "known"  # by its view, or without contrary evidence
+    BELIEVED = "believed"  # unmoved since the start, though its view differs from the last run
+    DOUBTED = "doubted"  # its frames are dropped
 
 
 @dataclass(slots=True, eq=False)
 class _Webcam:
-    """One of several alike. losses: how often it went away."""
+    """One of several identical webcams. losses: how often it was lost."""
 
     group: tuple[str, ...]
     trust: Trust
     is_away: bool = False
     losses: int = 0
-    stayed: bool = True  # in its port since the start, as whoever started meant it
+    stayed: bool = True  # in its port since the start
     took_part: bool = False
-    is_misplaced: bool = False  # by its calibration: where it was before says nothing
+    is_misplaced: bool = False  # contradicts its calibration, so its earlier place is no evidence
     notice: str = ""
 
 
 class IdenticalCameras:
-    """The identical ones among the cameras; every other camera is known. Its owner's lock guards it."""
+    """State of all identical webcams; every other camera has trust KNOWN. Guarded by the owner's lock."""
 
     def __init__(self, groups: Iterable[Collection[str]], remembered: Collection[str]) -> None:
-        """groups: of names that are alike; remembered: names whose room is known from an earlier run."""
+        """groups: names of identical webcams; remembered: names with a room memory of an earlier run."""
         self._webcams = {
             name: _Webcam(
                 tuple(sorted(group)),
@@ -51,28 +51,28 @@ class IdenticalCameras:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of all identical ones."""
+        """The names of all identical webcams."""
         return tuple(self._webcams)
 
     def others(self, camera: str) -> tuple[str, ...]:
-        """Those that it may be confused with."""
+        """The webcams identical to this one."""
         webcam = self._webcams.get(camera)
-        return tuple(one for one in webcam.group if one != camera) if webcam else ()
+        return tuple(name for name in webcam.group if name != camera) if webcam else ()
 
     def trust(self, camera: str) -> Trust:
-        """As last judged."""
+        """The last result of `judge`."""
         return self._webcams[camera].trust if camera in self._webcams else Trust.KNOWN
 
     def losses(self, camera: str) -> int:
-        """How often it went away."""
+        """The number of losses."""
         return self._webcams[camera].losses if camera in self._webcams else 0
 
     def notice(self, camera: str) -> str:
-        """What people must do about it; empty when nothing."""
+        """The trouble and its fix, for users; empty without trouble."""
         return self._webcams[camera].notice if camera in self._webcams else ""
 
     def admit(self, camera: str) -> bool:
-        """A frame of it came; whether it may be used."""
+        """Registers a frame; True if it may be used."""
         webcam = self._webcams.get(camera)
         if webcam is None:
             return True
@@ -82,27 +82,27 @@ class IdenticalCameras:
         webcam.took_part = True
         return True
 
-    def misplaced(self, camera: str, is_misplaced: bool) -> None:
-        """Whether its picture contradicts its calibration: then its port is none to come back to."""
+    def set_misplaced(self, camera: str, is_misplaced: bool) -> None:
+        """Sets whether its view contradicts its calibration: its port then identifies nothing."""
         if camera in self._webcams:
             self._webcams[camera].is_misplaced = is_misplaced
 
     def went(self, camera: str) -> None:
-        """It was unplugged, or is lost otherwise."""
+        """Registers a loss, such as unplugging."""
         webcam = self._webcams.get(camera)
         if webcam is None:
             return
         webcam.is_away = True
         webcam.losses += 1
         group = [self._webcams[name] for name in webcam.group]
-        away = [one for one in group if one.is_away]
-        if len(away) > 1 and any(one.took_part and not one.is_misplaced for one in group):
-            for one in away:
-                one.trust, one.stayed = Trust.DOUBTED, False
+        away = [member for member in group if member.is_away]
+        if len(away) > 1 and any(m.took_part and not m.is_misplaced for m in group):
+            for member in away:
+                member.trust, member.stayed = Trust.DOUBTED, False
 
     def judge(self, camera: str, own: float | None, other: str, likeness: float) -> Trust:
-        """Of one that is not known: how much its picture is like its own room, None where nothing is remembered of that, and
-        like the room of the likeliest other one."""
+        """Identifies a webcam in doubt. own: similarity of its view to its own room, None without a memory of it; likeness:
+        to the room of `other`, the most similar other webcam."""
         webcam = self._webcams[camera]
         alike, of_others = " and ".join(webcam.group), " and ".join(self.others(camera))
         if is_own_room(own or 0.0, likeness) or (own is None and self._is_the_last(webcam)):
@@ -122,24 +122,22 @@ class IdenticalCameras:
         else:
             webcam.trust = Trust.DOUBTED
             webcam.notice = (
-                f"cannot be told from {of_others}: they are identical, were unplugged together, and none of them saw "
-                "before what it sees now; it takes no part -- plug each into the port where it was and start mocapd "
-                "anew, which takes your word for it"
+                f"cannot be distinguished from {of_others}: they are identical, were unplugged together, and none of them "
+                "saw before what it sees now; it takes no part -- plug each into the port where it was and restart mocapd, "
+                "which then trusts the ports"
             )
         return webcam.trust
 
     def _is_the_last(self, webcam: _Webcam) -> bool:
-        """Whether all others are known again: then there is no choice."""
-        others = [
-            one for one in (self._webcams[name] for name in webcam.group) if one is not webcam
-        ]
-        return all(one.trust is Trust.KNOWN and not one.is_away for one in others)
+        """True if all other webcams of the group are identified: it must be the remaining one."""
+        others = [m for m in (self._webcams[name] for name in webcam.group) if m is not webcam]
+        return all(member.trust is Trust.KNOWN and not member.is_away for member in others)
 
 
 def identical_groups(
     sources: Iterable[Source], calibrated: Collection[str]
 ) -> list[tuple[str, ...]]:
-    """The names of calibrated webcams that have vid, pid and serial in common, of each kind with several."""
+    """Groups of calibrated webcams, by name, with equal vid, pid and serial."""
     by_model: dict[tuple[str, str, str], set[str]] = {}
     for source in sources:
         if isinstance(source, Pluggable) and source.name in calibrated:

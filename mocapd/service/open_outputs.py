@@ -1,4 +1,4 @@
-"""Every output of a configuration, opened together: before there is a session, and for as long as the service lives."""
+"""All outputs of a configuration, opened together before the first session and open until the service ends."""
 
 from contextlib import ExitStack
 
@@ -9,7 +9,7 @@ from mocapd.outputs.output_table import build_sinks
 
 
 class OpenOutputs:
-    """`instance`: the daemon's name in what they send."""
+    """`instance`: the daemon's name in the messages."""
 
     def __init__(self, config: Config) -> None:
         self.instance = instance_name(config.instance)
@@ -25,7 +25,7 @@ class OpenOutputs:
         self.close()
 
     def open(self) -> None:
-        """All of them, or none; nothing where they are open already. Raises what opening one raises."""
+        """Opens all or none; idempotent. Raises the error of the failing output."""
         if self._opened is not None:
             return
         with ExitStack() as opened:
@@ -41,7 +41,7 @@ class OpenOutputs:
         return seconds(monotonic_ns() - self._opened_ns)
 
     def close(self) -> None:
-        """May be called twice."""
+        """Closes all; idempotent."""
         opened, self._opened = self._opened, None
         if opened is not None:
             opened.close()

@@ -1,4 +1,4 @@
-"""From the newest body to every output: frames numbered on from session to session, and state told."""
+"""Sends each body and state message to every output; frame numbers continue across sessions."""
 
 import itertools
 import math
@@ -16,12 +16,12 @@ from mocapd.pipeline.body_hub import BodySample
 from mocapd.types import Skeleton, Tracking
 
 LIVE = Tracking.LIVE.value
-REST_EVERY_NS = NS_PER_S  # at the soonest, while the body's proportions are learned
+REST_EVERY_NS = NS_PER_S  # shortest interval of rest skeletons while the proportions are estimated
 
 
 class Publisher:
-    """Takes what is put in a BodyHub. `put` is called by one thread at a time, `begin` while none does; `tell`
-    and `recenter` by any."""
+    """A consumer of a BodyHub. `put` is called by one thread at a time, never during `begin`; `publish_state` and
+    `recenter` are thread-safe."""
 
     def __init__(
         self, sinks: Sequence[Sink], instance: str, clock: Callable[[], int] = monotonic_ns
@@ -30,16 +30,16 @@ class Publisher:
         self._seq = itertools.count()
         self._newest: SkeletonFrame | None = None
         self._stature_m = 0.0
-        self._told: Skeleton | None = None
-        self._told_ns = 0
+        self._sent_rest: Skeleton | None = None
+        self._sent_rest_ns = 0
 
     def begin(self, skeleton: Skeleton, stature_m: float) -> None:
-        """A session begins, with this wearer."""
+        """Begins a session with this wearer."""
         self._stature_m = stature_m
-        self._tell_rest(skeleton, self._clock())
+        self._send_rest(skeleton, self._clock())
 
     def put(self, sample: BodySample) -> None:
-        """Send the body, and the rest skeleton where the one that was told no longer does."""
+        """Sends the body, and the rest skeleton when it has changed noticeably."""
         now_ns = self._clock()
         frame = skeleton_frame(
             sample.body,
@@ -52,30 +52,32 @@ class Publisher:
         self._newest = frame
         for sink in self._sinks:
             sink.send(frame)
-        if now_ns - self._told_ns >= REST_EVERY_NS and (
-            self._told is None or is_noticeable(self._told, sample.skeleton)
+        if now_ns - self._sent_rest_ns >= REST_EVERY_NS and (
+            self._sent_rest is None or is_noticeable(self._sent_rest, sample.skeleton)
         ):
-            self._tell_rest(sample.skeleton, now_ns)
+            self._send_rest(sample.skeleton, now_ns)
 
-    def tell(self, message: StateMessage) -> None:
-        """Tell every output."""
+    def publish_state(self, message: StateMessage) -> None:
+        """Sends a state message to every output."""
         for sink in self._sinks:
             sink.send_state(message)
 
     def recenter(self) -> Facing:
-        """Tell every output that the person faces forward now. Raises UnavailableError when it is not seen."""
+        """Defines the person's heading as forward, in every output. Raises UnavailableError without a live body."""
         frame = self._newest
         yaw_rad = facing_yaw_rad(frame) if frame is not None and frame.tracking == LIVE else None
         if frame is None or yaw_rad is None:
             raise UnavailableError(
-                "nobody is seen whose forward could be told",
+                "no person in view whose heading could become forward",
                 "the daemon",
-                "stand where the cameras see you, look ahead, and say it again",
+                "stand where the cameras see you, look ahead, and repeat it",
             )
         facing = Facing(self._instance, frame.person, math.degrees(yaw_rad), frame.capture_unix_ns)
-        self.tell(facing)
+        self.publish_state(facing)
         return facing
 
-    def _tell_rest(self, skeleton: Skeleton, now_ns: int) -> None:
-        self._told, self._told_ns = skeleton, now_ns
-        self.tell(rest_skeleton(skeleton, instance=self._instance, stature_m=self._stature_m))
+    def _send_rest(self, skeleton: Skeleton, now_ns: int) -> None:
+        self._sent_rest, self._sent_rest_ns = skeleton, now_ns
+        self.publish_state(
+            rest_skeleton(skeleton, instance=self._instance, stature_m=self._stature_m)
+        )

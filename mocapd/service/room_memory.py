@@ -1,5 +1,6 @@
-"""What identical webcams saw when they were last known, kept in the state directory: after a restart too they are told
-apart by this. Private to its owner, as it is a small picture of the room.
+"""Stores the last views of identified identical webcams in the state directory, to identify them after a restart.
+
+The file is readable by its owner only, as it shows the room.
 """
 
 import hashlib
@@ -18,7 +19,7 @@ from mocapd.boundary.numbers import brief
 from mocapd.boundary.parsing import decode_msgpack
 from mocapd.calibrate.bump.landmarks import Landmarks, landmarks_at
 from mocapd.errors import InputError, MocapdError, NewerFileError
-from mocapd.set_aside import Why, set_aside
+from mocapd.quarantine import Why, quarantine
 from mocapd.types import Camera
 from mocapd.whole_file import whole_file
 
@@ -31,7 +32,7 @@ _MOST_SIDE_PX = 4096
 DIGEST_BYTES = 16
 
 
-class _KeptView(msgspec.Struct, frozen=True):
+class _StoredView(msgspec.Struct, frozen=True):
     """picture: grey, row by row; places: x, y as little-endian 32-bit floats [px]."""
 
     width: Annotated[int, Meta(ge=1, le=_MOST_SIDE_PX)]
@@ -40,59 +41,59 @@ class _KeptView(msgspec.Struct, frozen=True):
     places: bytes
 
 
-class _KeptRoom(msgspec.Struct, frozen=True):
-    """calibration: a digest of the lens and place that it was seen from."""
+class _StoredRoom(msgspec.Struct, frozen=True):
+    """calibration: digest of the intrinsics and extrinsics during the view."""
 
     camera: str
     calibration: bytes
-    views: list[_KeptView]
+    views: list[_StoredView]
 
 
 class _Schema(msgspec.Struct, frozen=True):
-    """What every version has."""
+    """The common part of all versions."""
 
     schema: int
 
 
-class _KeptRooms(msgspec.Struct, frozen=True):
+class _StoredRooms(msgspec.Struct, frozen=True):
     schema: Literal[1]
-    rooms: list[_KeptRoom]
+    rooms: list[_StoredRoom]
 
 
 class RoomMemory:
-    """One file. That it cannot be read or written is told once, and costs only this memory."""
+    """One file. An unreadable or unwritable file is logged once and costs only the memory."""
 
     def __init__(self, state_dir: Path) -> None:
         self._path = state_dir / FILE_NAME
         self._failed = False
 
     def read(self, cameras: Mapping[str, Camera]) -> dict[str, list[Landmarks]]:
-        """Of those cameras that are calibrated as they were then. A file that cannot be used is set aside."""
+        """The views of cameras with an unchanged calibration. Quarantines an unusable file."""
         try:
-            return kept_rooms(self._path, cameras)
+            return read_rooms(self._path, cameras)
         except MissingError:
             return {}
         except (InputError, NewerFileError) as error:
-            self._put_aside(error)
+            self._quarantine(error)
             return {}
 
-    def _put_aside(self, error: MocapdError) -> None:
+    def _quarantine(self, error: MocapdError) -> None:
         where = ""
-        with suppress(OSError):  # it is met again then
+        with suppress(OSError):  # the next start tries again
             why: Why = "newer" if isinstance(error, NewerFileError) else "corrupt"
-            where = f", and is kept as {set_aside(self._path, why).name}"
+            where = f", and is now {quarantine(self._path, why).name}"
         _log.warning(
-            "%s cannot be used (%s)%s; it is made anew: until then identical cameras are told apart by their ports alone",
+            "%s cannot be used (%s)%s; until a new one is written only the USB ports distinguish identical cameras",
             *(self._path, error.what, where),
         )
 
     def write(self, cameras: Mapping[str, Camera], rooms: Mapping[str, list[Landmarks]]) -> None:
-        """In place of what was there."""
-        kept = [
-            _KeptRoom(name, _mark(cameras[name]), [_kept(one) for one in views])
+        """Replaces the file."""
+        stored = [
+            _StoredRoom(name, _calibration_digest(cameras[name]), [_encode(view) for view in views])
             for name, views in rooms.items()
         ]
-        body = msgspec.msgpack.encode(_KeptRooms(1, kept))
+        body = msgspec.msgpack.encode(_StoredRooms(1, stored))
         try:
             self._path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
             with whole_file(self._path, private=True) as partial:
@@ -100,15 +101,15 @@ class RoomMemory:
         except OSError as error:
             if not self._failed:
                 _log.warning(
-                    "what identical cameras see cannot be kept for the next start (%s): %s -- make room or the folder "
+                    "the views of identical cameras cannot be saved for the next start (%s): %s -- make room or the folder "
                     "writable",
                     *(error.strerror, self._path),
                 )
             self._failed = True
 
 
-def kept_rooms(path: Path, cameras: Mapping[str, Camera]) -> dict[str, list[Landmarks]]:
-    """Of those cameras that are calibrated as they were then. Raises MissingError, InputError for a damaged one,
+def read_rooms(path: Path, cameras: Mapping[str, Camera]) -> dict[str, list[Landmarks]]:
+    """The views of cameras with an unchanged calibration. Raises MissingError, InputError for a damaged file,
     NewerFileError."""
     data = read_file(path, _MOST_BYTES)
     body = data[DIGEST_BYTES:]
@@ -120,39 +121,38 @@ def kept_rooms(path: Path, cameras: Mapping[str, Camera]) -> dict[str, list[Land
             f"has schema {brief(schema)}, this mocapd reads {SCHEMA}",
             *(str(path), "use the mocapd that wrote it"),
         )
-    kept = decode_msgpack(body, _KeptRooms)
+    stored = decode_msgpack(body, _StoredRooms)
     return {
-        room.camera: [_view(one, cameras[room.camera]) for one in room.views]
-        for room in kept.rooms
-        if room.camera in cameras and room.calibration == _mark(cameras[room.camera])
+        room.camera: [_decode(view, cameras[room.camera]) for view in room.views]
+        for room in stored.rooms
+        if room.camera in cameras and room.calibration == _calibration_digest(cameras[room.camera])
     }
 
 
-def _kept(view: Landmarks) -> _KeptView:
+def _encode(view: Landmarks) -> _StoredView:
     height, width = view.picture.shape
     places = view.places.astype("<f4").tobytes()
-    return _KeptView(width, height, view.picture.tobytes(), places)
+    return _StoredView(width, height, view.picture.tobytes(), places)
 
 
-def _view(kept: _KeptView, camera: Camera) -> Landmarks:
+def _decode(stored: _StoredView, camera: Camera) -> Landmarks:
     """Raises InputError."""
-    if len(kept.picture) != kept.width * kept.height or len(kept.places) % 8:
+    if len(stored.picture) != stored.width * stored.height or len(stored.places) % 8:
         raise InputError("has a picture of another size than it says")
-    picture = np.frombuffer(kept.picture, np.uint8).reshape(kept.height, kept.width)
-    places = np.frombuffer(kept.places, "<f4").astype(np.float32).reshape(-1, 2)
+    picture = np.frombuffer(stored.picture, np.uint8).reshape(stored.height, stored.width)
+    places = np.frombuffer(stored.places, "<f4").astype(np.float32).reshape(-1, 2)
     if not (np.isfinite(places).all() and (np.abs(places) < _MOST_SIDE_PX).all()):
         raise InputError("has marks outside of its picture")
     return landmarks_at(picture, places, camera)
 
 
-def _mark(camera: Camera) -> bytes:
-    """Of a calibration: another one is of another place."""
+def _calibration_digest(camera: Camera) -> bytes:
     values = np.concatenate(
-        [np.ravel(one) for one in (camera.size_px, camera.K, camera.dist, camera.R, camera.t_m)]
+        [np.ravel(value) for value in (camera.size_px, camera.K, camera.dist, camera.R, camera.t_m)]
     )
     return digest_of(values.astype("<f8").tobytes())
 
 
 def digest_of(data: bytes) -> bytes:
-    """What the file begins with, of all that follows."""
+    """The checksum at the file's beginning, of all that follows."""
     return hashlib.blake2b(data, digest_size=DIGEST_BYTES).digest()

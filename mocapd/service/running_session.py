@@ -1,4 +1,4 @@
-"""The part of a service that can be replaced: the threads of one session's cameras and of its pipeline."""
+"""The replaceable part of a service: the threads of one session's cameras and pipeline."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
-from mocapd.capture.camera_thread.capture_care import CaptureCare
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.camera_thread.capture_watchdog import CaptureWatchdog
 from mocapd.capture.camera_thread.thread import CaptureThread
 from mocapd.capture.webcam.plug_events import PlugEvents
 from mocapd.config.sections import Config
@@ -25,13 +25,13 @@ from mocapd.service.step_watch import StepWatch
 from mocapd.session.camera_inputs import bundler_params
 from mocapd.session.session import Session
 
-STOP_S = 1.4  # what all threads together may take to end; a stalled camera takes a second [s]
+STOP_S = 1.4  # timeout of stopping all threads; a stalled camera takes a second [s]
 
 
 class RunningSession:
-    """Runs from `start` to `stop`, both called by its owner; `statuses` and `metrics` from any thread.
+    """Runs from `start` to `stop`, which the owner calls; `statuses` and `metrics` are thread-safe.
 
-    `died` hears, in its thread, of what ended one unexpectedly.
+    `died` is called in a thread that ends unexpectedly, with its exception.
     """
 
     def __init__(
@@ -48,9 +48,10 @@ class RunningSession:
         sizes_px = {name: c.size_px for name, c in self.inputs.items() if any(c.size_px)}
         guard = SizeGuard(sizes_px, collector)
         sources = [camera.source for camera in session.cameras]
-        rooms, stature_m = RoomMemory(config.state_dir), session.known.wearer.stature_m
+        rooms = RoomMemory(config.state_dir)
+        stature_m = session.calibration.wearer.stature_m
         self._cameras = CameraWatch(sources, session.rig, guard, rooms, stature_m)
-        # who looks at the pictures joins it
+        # consumers of pictures join it
         self.hub = FrameHub(self.inputs, self._cameras, bundler=bundler)
         self._captures = [
             CaptureThread(
@@ -64,7 +65,7 @@ class RunningSession:
             for c in session.cameras
         ]
         self._plugs = PlugEvents(self._look_again)
-        self._care = CaptureCare(self._captures)
+        self._watchdog = CaptureWatchdog(self._captures)
         self._steps = StepWatch(config.tracker.stuck_s)
         smoother = Smoother(config.smoothing.preset, skeleton_of(session.shape))
         self._loop = PipelineLoop(
@@ -79,7 +80,7 @@ class RunningSession:
         )
 
     def start(self) -> None:
-        """Begin; returns at once."""
+        """Starts all threads; returns at once."""
         self._loop.start()
         self._cameras.start()
         self._plugs.start()
@@ -87,7 +88,7 @@ class RunningSession:
             capture.start()
 
     def stop(self) -> None:
-        """First everything lets go, then everything ends, within STOP_S."""
+        """Signals all threads, then joins them within STOP_S."""
         self._plugs.stop()
         self._cameras.stop()
         self._loop.let_go()
@@ -104,45 +105,45 @@ class RunningSession:
 
     @property
     def over(self) -> bool:
-        """Whether every recording has ended."""
+        """True once every recording has ended."""
         return all(c.status().state is CaptureState.ENDED for c in self._captures)
 
     def statuses(self) -> dict[str, CaptureStatus]:
-        """How each camera fares, by id."""
+        """The status of each camera, by id."""
         return {
-            status.camera: self._noticed(status) for status in (c.status() for c in self._captures)
+            status.camera: self._with_notice(status)
+            for status in (c.status() for c in self._captures)
         }
 
-    def _noticed(self, status: CaptureStatus) -> CaptureStatus:
+    def _with_notice(self, status: CaptureStatus) -> CaptureStatus:
         notice = self._cameras.notice(status.camera)
         return replace(status, notice=notice) if notice else status
 
     def metrics(self) -> Metrics:
-        """How the pipeline does."""
+        """The pipeline's metrics."""
         return self._loop.metrics()
 
     def mountings(self) -> Mapping[str, Mounting]:
-        """How each camera is mounted, as last seen."""
+        """The last result of the mounting check of each camera."""
         return {name: self._cameras.mounting(name) for name in self.inputs}
 
     @property
     def detail(self) -> str:
-        """What people should know of the pipeline; empty when all is well."""
+        """Trouble of the pipeline, for users; empty without trouble."""
         return self._steps.detail
 
     def look(self) -> None:
-        """Whether cameras were bumped or swapped, about once a second, by one thread."""
+        """Checks for bumped or swapped cameras; call about once a second, from one thread."""
         self._cameras.look()
 
     def watch(self) -> None:
-        """What hangs or has slept is set right; about once a second or more often, by one thread. Raises
-        StuckStepError."""
+        """Runs the watchdogs; call at least once a second, from one thread. Raises StuckStepError."""
         self._steps.look(self._loop.step_s)
-        self._care.watch()
+        self._watchdog.watch()
 
 
 def _absence(config: Config, session: Session) -> Absence | None:
-    """Who tells that no frames come; nobody where recordings are played, which end."""
+    """The reporter of missing frames; None for recordings, which end."""
     if all(camera.source.recorded for camera in session.cameras):
         return None
     n_joints = len(skeleton_of(session.shape).names)

@@ -1,4 +1,4 @@
-"""The composition root: outputs that live from start to stop, and under them one session after another."""
+"""The composition root: outputs that live from start to stop, and one replaceable session."""
 
 import time
 from collections.abc import Mapping
@@ -27,7 +27,7 @@ from mocapd.types import Rig
 
 
 class ThreadDiedError(RuntimeError):
-    """A thread ended by what nobody expected, which is the `__cause__`."""
+    """A thread ended with an unexpected exception, the `__cause__`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,54 +42,52 @@ class Snapshot:
 
 
 class Service:
-    """Runs from `__enter__` to `__exit__`; meanwhile its owner waits in `wait`, and may `replace` the session.
+    """Runs from `__enter__` to `__exit__`; its owner waits in `wait` and may `replace` the session.
 
-    `died`, `end`, `recenter` and what tells of the session that runs may be called from any thread,
-    everything else by the owner.
+    `died`, `end`, `recenter` and the queries of the running session are thread-safe; the rest is for the owner.
     """
 
     def __init__(
         self, config: Config, session: Session, outputs: OpenOutputs | None = None
     ) -> None:
-        """outputs: those of this configuration where they are open already; closed with the service."""
+        """outputs: of this configuration, if open already; closed with the service."""
         self._outputs = OpenOutputs(config) if outputs is None else outputs
         self.instance = self._outputs.instance
         self._sinks = self._outputs.sinks
         self._publisher = Publisher(self._sinks, self.instance)
-        self.bodies = BodyHub(self._publisher)  # who works with the bodies joins it
+        self.bodies = BodyHub(self._publisher)  # consumers of bodies join it
         self._running = RunningSession(config, session, self.bodies, self.died)
         self._earlier: Metrics | None = None  # of all sessions before
         self.preparing = ""  # see Snapshot; its owner knows
         self._ended = Latch()
         self._death: BaseException | None = None
         self._started_unix_ns = 0
-        self._told: dict[str, tuple[object, ...]] = {}  # the cameras' troubles
+        self._published: dict[str, tuple[object, ...]] = {}  # camera troubles
 
     def __enter__(self) -> "Service":
-        """Open the outputs, then start the threads. Raises what opening an output raises."""
+        """Opens the outputs, then starts the threads. Raises the error of a failing output."""
         self._outputs.open()
         self._started_unix_ns = time.time_ns()
         if self.session.rig:
-            self._tell_calibration()
+            self._publish_calibration()
         self._begin()
         return self
 
     def __exit__(self, *_: object) -> None:
-        """First everything lets go, then everything closes."""
+        """Stops the session, then closes the outputs."""
         self._running.stop()
         self._outputs.close()
 
     def replace(self, config: Config, session: Session) -> None:
-        """Go on with this session, on the same outputs: frames are numbered on, and state is told anew.
+        """Replaces the session on the same outputs: frame numbers continue, state is published again.
 
-        Where the cameras stand as before, the tracker begins from the newest body. Takes as long as the cameras
-        take to let go: a webcam opens only once. Whoever has joined the old session's frames has left them. Once
-        the service is told to end, nothing begins any more.
+        With an unchanged rig the tracker starts from the newest body. Blocks until the cameras are released, as a
+        webcam opens only once. Consumers of the old session's frames must have left. After `end` no session starts.
         """
         running = RunningSession(config, session, self.bodies, self.died)
         before, world = self._running.inputs, self.session.rig
         self._running.stop()
-        self._earlier = _added(self._running.metrics(), self._earlier)
+        self._earlier = _sum_counts(self._running.metrics(), self._earlier)
         self._running = running
         if self._ended.is_set():
             return
@@ -97,10 +95,10 @@ class Service:
         if newest is not None and _is_same_world(world, session.rig):
             session.tracker.reset(near=newest.body)
         if world or session.rig:
-            self._tell_calibration()
+            self._publish_calibration()
         for name, camera in before.items():
             if name not in running.inputs:
-                self._publisher.tell(gone_message(self.instance, name, camera))
+                self._publisher.publish_state(gone_message(self.instance, name, camera))
         self._begin()
 
     def _begin(self) -> None:
@@ -112,35 +110,35 @@ class Service:
 
     @property
     def config(self) -> Config:
-        """What it was made from."""
+        """The running session's configuration."""
         return self._running.config
 
     @property
     def session(self) -> Session:
-        """Cameras, rig and tracker."""
+        """The running session."""
         return self._running.session
 
     @property
     def hub(self) -> FrameHub:
-        """Its cameras' pictures."""
+        """The hub of its cameras' frames."""
         return self._running.hub
 
     def statuses(self) -> dict[str, CaptureStatus]:
-        """How each camera fares, by id."""
+        """The status of each camera, by id."""
         return self._running.statuses()
 
     def snapshot(self) -> Snapshot:
-        """How everything fares now; what is counted is counted since the start of the service."""
+        """The current state; counters run since the start of the service."""
         return self._snapshot_of(self._running)
 
     @property
     def uptime_s(self) -> float:
-        """Since its outputs were opened [s]."""
+        """Time since the outputs were opened [s]."""
         return self._outputs.uptime_s
 
     def _snapshot_of(self, running: RunningSession) -> Snapshot:
         return Snapshot(
-            _added(running.metrics(), self._earlier),
+            _sum_counts(running.metrics(), self._earlier),
             running.statuses(),
             {sink.name: sink.status() for sink in self._sinks},
             running.mountings(),
@@ -150,16 +148,16 @@ class Service:
     # -- its end ---------------------------------------------------------------------------------
 
     def died(self, error: BaseException) -> None:
-        """A thread ended unexpectedly: so must the process."""
+        """Ends the service after the unexpected end of a thread."""
         self._death = self._death or error
         self._ended.set()
 
     def end(self) -> None:
-        """Make `wait` return; from any thread or a signal handler."""
+        """Makes `wait` return; thread-safe and signal-safe."""
         self._ended.set()
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether it is over: asked to end, or every recording has ended.
+        """True when the service is over: after `end`, or when every recording has ended.
 
         Raises the MocapdError that killed a thread, ThreadDiedError for anything else.
         """
@@ -171,21 +169,21 @@ class Service:
         return ended or self._running.over
 
     def watch(self) -> None:
-        """Look after what may hang: call it several times a second. Raises StuckStepError."""
+        """Runs the watchdogs; call several times a second. Raises StuckStepError."""
         self._running.watch()
 
     # -- state for the outputs -------------------------------------------------------------------
 
     def has_news(self, snapshot: Snapshot) -> bool:
-        """Whether something has happened to a camera that was not told yet."""
-        return _troubles(snapshot) != self._told
+        """True if a camera's state has changed since the last `publish_status`."""
+        return _troubles(snapshot) != self._published
 
-    def tell(self, snapshot: Snapshot) -> None:
-        """Look after the cameras, then health and camera status to the outputs; call it about once a second."""
+    def publish_status(self, snapshot: Snapshot) -> None:
+        """Checks the cameras and publishes health and camera status; call it about once a second."""
         running = self._running
-        self._told = _troubles(snapshot)
+        self._published = _troubles(snapshot)
         running.look()
-        self._publisher.tell(
+        self._publisher.publish_state(
             health_message(
                 self.instance,
                 self._started_unix_ns,
@@ -196,10 +194,10 @@ class Service:
             )
         )
         for message in self._camera_messages(running, snapshot):
-            self._publisher.tell(message)
+            self._publisher.publish_state(message)
 
     def camera_messages(self) -> tuple[CameraStatus, ...]:
-        """How each camera of the session that runs fares now."""
+        """The status of each camera of the running session."""
         running = self._running
         return self._camera_messages(running, self._snapshot_of(running))
 
@@ -218,14 +216,14 @@ class Service:
         )
 
     def recenter(self) -> Facing:
-        """The way the person faces is forward from now on: for the outputs that turn it so. Raises
-        UnavailableError when nobody is seen."""
+        """Defines the person's heading as forward, for outputs that use it. Raises UnavailableError without a person in
+        view."""
         return self._publisher.recenter()
 
-    def _tell_calibration(self) -> None:
-        """Also that there is none any more."""
+    def _publish_calibration(self) -> None:
+        """Publishes the calibration; an empty one where there is none."""
         session, instance = self.session, self.instance
-        self._publisher.tell(
+        self._publisher.publish_state(
             calibration_info(session.rig, instance=instance, source=session.rig_source)
             if session.rig
             else CalibrationInfo(instance, "", ())
@@ -233,28 +231,28 @@ class Service:
 
 
 def _troubles(snapshot: Snapshot) -> dict[str, tuple[object, ...]]:
-    """What of the cameras' states is news when it changes."""
+    """The part of the cameras' states whose changes are published at once."""
     return {
-        name: (one.state, one.is_silent, one.reason, one.notice)
-        for name, one in snapshot.cameras.items()
+        name: (status.state, status.is_silent, status.reason, status.notice)
+        for name, status in snapshot.cameras.items()
     }
 
 
 def _is_same_world(before: Rig | None, after: Rig | None) -> bool:
-    """Whether a place is told alike by both: a camera of both has not moved."""
+    """True if both rigs have the same world frame: a common camera has not moved."""
     if before is None or after is None:
         return False
-    known = {camera.name: camera for camera in before.cameras}
+    earlier = {camera.name: camera for camera in before.cameras}
     return any(
-        camera.name in known
-        and np.array_equal(camera.R, known[camera.name].R)
-        and np.array_equal(camera.t_m, known[camera.name].t_m)
+        camera.name in earlier
+        and np.array_equal(camera.R, earlier[camera.name].R)
+        and np.array_equal(camera.t_m, earlier[camera.name].t_m)
         for camera in after.cameras
     )
 
 
-def _added(metrics: Metrics, earlier: Metrics | None) -> Metrics:
-    """With what was counted before."""
+def _sum_counts(metrics: Metrics, earlier: Metrics | None) -> Metrics:
+    """Adds the counters of earlier sessions."""
     if earlier is None:
         return metrics
     return replace(

@@ -1,7 +1,7 @@
-"""A tracker's step that takes too long: told after a moment, and the end of the process when it never ends.
+"""Watchdog of the tracker's step: logs a slow step, ends the process when a step hangs.
 
-Meanwhile the newest frames wait and older ones are dropped. A thread that computes cannot be ended from outside: what
-is left is to end the process, so that whoever started it (systemd, a user) starts it again.
+Meanwhile the newest frames wait and older ones are dropped. A computing thread cannot be ended from outside, so the
+process ends and systemd or the user restarts it.
 """
 
 import logging
@@ -10,24 +10,24 @@ from mocapd.errors import MocapdError
 
 _log = logging.getLogger(__name__)
 
-SLOW_S = 1.0  # told from then on: thirty times what a step may take [s]
+SLOW_S = 1.0  # log threshold: thirty times a step's budget [s]
 
 
 class StuckStepError(MocapdError):
-    """A tracker computes on one frame set without end (70 EX_SOFTWARE)."""
+    """A tracker hangs in one frame set (70 EX_SOFTWARE)."""
 
 
 class StepWatch:
-    """Looks at how long the step that runs has taken. For one thread."""
+    """Checks the duration of the current step. Not thread-safe."""
 
     def __init__(self, stuck_s: float) -> None:
-        """stuck_s: after so long a step is held to never end [s]."""
+        """stuck_s: after so long a step counts as hanging [s]."""
         self._stuck_s = stuck_s
-        self._longest_s = 0.0  # of a step that is told of
-        self.detail = ""  # what people should know now
+        self._longest_s = 0.0  # of a logged step
+        self.detail = ""  # the trouble, for users
 
     def look(self, step_s: float) -> None:
-        """step_s: since the step that runs began; 0 where none does. Raises StuckStepError."""
+        """step_s: duration of the current step; 0 between steps. Raises StuckStepError."""
         if step_s >= self._stuck_s:
             raise StuckStepError(
                 f"the tracker has worked on one picture for {step_s:.0f} s",

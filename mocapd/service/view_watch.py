@@ -1,7 +1,7 @@
-"""Compares now and then what live cameras show with their calibration and their times, by the checks of recordings.
+"""Periodically checks live views against calibration and clock offsets, by the checks of recordings.
 
-While it collects, half a minute or so, each frame costs its capture thread a copy of a small picture. A thread of low
-priority does the rest. Then it rests for minutes.
+While it collects, for about half a minute, each frame costs its capture thread the copy of a small picture. A thread of
+low priority computes the rest. Then it pauses for minutes.
 """
 
 import os
@@ -26,7 +26,7 @@ _SPEED_M_S = 0.5  # of joints, as people move
 
 
 class ViewWatch:
-    """`put` is called by capture threads, `start` and `stop` by the owner, the rest by any thread."""
+    """Capture threads call `put`, the owner calls `start` and `stop`; the rest is thread-safe."""
 
     def __init__(
         self,
@@ -35,8 +35,8 @@ class ViewWatch:
         stature_m: float | None = None,
         longest_s: float = _LONGEST_S,
     ) -> None:
-        """No rig: there is nothing to compare with. newest: the newest frame of a camera, from any thread; longest_s: of
-        collecting, when little moves."""
+        """rig: None disables it. newest: thread-safe, the newest frame of a camera; longest_s: limit of collecting when
+        little moves."""
         self._rig, self._stature_m, self._longest_s = rig, stature_m, longest_s
         self._newest = newest
         self._sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
@@ -47,17 +47,17 @@ class ViewWatch:
         self._thread = threading.Thread(target=self._run, name="views")
 
     def start(self) -> None:
-        """Begin to collect; returns at once."""
+        """Starts collecting; returns at once."""
         if self._is_collecting:
             self._thread.start()
 
     def stop(self) -> None:
-        """It ends by itself soon; never blocks."""
+        """Signals the thread to end; never blocks."""
         self._stopping.set()
         self._is_collecting = False
 
     def put(self, frame: Frame) -> None:
-        """Hand in a frame; a small picture of it is kept while it collects."""
+        """Takes a frame; stores a small copy while collecting."""
         if not self._is_collecting or frame.pixels.shape[1::-1] != self._sizes.get(frame.camera):
             return
         step = max(1, max(self._sizes[frame.camera]) // WORK_PX)
@@ -66,21 +66,21 @@ class ViewWatch:
 
     @property
     def result(self) -> CheckResult:
-        """Of the last comparison; another object after each."""
+        """The last comparison's result; a new object after each."""
         return self._result
 
     @property
     def off_m(self) -> float:
-        """By how much the views contradict each other for good, as last compared [m]. Where a camera is late, what moves is
-        off: its times are not corrected here."""
-        late_s = max((abs(one.late_s) for one in self._result.findings), default=0.0)
+        """Lasting disagreement of the views in the last comparison [m]. Includes the motion of a person within a camera's
+        delay, which is not corrected here."""
+        late_s = max((abs(finding.late_s) for finding in self._result.findings), default=0.0)
         return max(self._result.off_m, _SPEED_M_S * late_s)
 
     def _run(self) -> None:
-        with suppress(OSError, AttributeError):  # of this thread alone, where the system knows that
+        with suppress(OSError, AttributeError):  # of this thread only, where the system supports it
             os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE)
         while not self._stopping.is_set():
-            result = self._compared()
+            result = self._compare()
             if result is None:
                 return
             self._result = result
@@ -88,8 +88,8 @@ class ViewWatch:
             self._waiting.clear()
             self._is_collecting = not self._stopping.is_set()
 
-    def _compared(self) -> CheckResult | None:
-        """What the next half minute shows; None when it is to stop."""
+    def _compare(self) -> CheckResult | None:
+        """Collects for half a minute and compares; None after `stop`."""
         assert self._rig is not None
         check = CaptureCheck(self._rig, self._stature_m)
         first_s: float | None = None

@@ -1,1 +1,1 @@
-"""What one run works on: cameras, calibration and tracker, from the configuration."""
+"""A session: cameras, calibration and tracker, built from the configuration."""

@@ -1,4 +1,4 @@
-"""From the cameras of the configuration to sources, in the order of the rig."""
+"""Makes sources of the configured cameras, in the order of the rig."""
 
 from collections.abc import Sequence
 from contextlib import closing
@@ -26,9 +26,8 @@ from mocapd.types import Rig
 class CameraInput:
     """A camera of the daemon.
 
-    address: what it is read from, which may hold a password: it is never shown, sent or logged, `spec`
-    is; size_px: of its pictures, (0, 0) if not known before; expected_hz: warned about when the
-    camera is slower.
+    address: of its source; may hold a password, so it is never shown, sent or logged: use `spec`. size_px: (width,
+    height) of its pictures, (0, 0) if unknown; expected_hz: a lower rate is logged as a warning.
     """
 
     source: Source
@@ -38,7 +37,7 @@ class CameraInput:
 
     @property
     def spec(self) -> str:
-        """What it is read from, as shown to people."""
+        """The address without its password, for users."""
         return without_password(self.address)
 
     @property
@@ -53,8 +52,8 @@ def camera_inputs(
     origin: Origin | None = None,
     usual_px: tuple[int, int] = WebcamSettings().size_px,
 ) -> tuple[CameraInput, ...]:
-    """Sources for these cameras, checked but not opened; origin: of all of them; usual_px: asked of a webcam that
-    the rig has not. Raises ConfigError or InputError."""
+    """Sources of these cameras, checked but not opened. origin: of all cameras; usual_px: size of webcams outside the
+    rig. Raises ConfigError or InputError."""
     cameras = in_rig_order(cameras, rig)
     sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
     identities = identities_of((camera.id, camera.source) for camera in cameras)
@@ -67,7 +66,7 @@ def camera_inputs(
             fps_hz=camera.fps_hz,
             controls=camera.controls,
         )
-        others = tuple(one for name, one in identities.items() if name != camera.id)
+        others = tuple(identity for name, identity in identities.items() if name != camera.id)
         request = SourceRequest(camera.id, size_px, settings, others, pace)
         open_one = open_source if origin is None else origin.source
         source = open_one(camera.source, request)
@@ -78,15 +77,15 @@ def camera_inputs(
 
 
 def bundler_params(config: Config) -> BundlerParams:
-    """How their frames wait for each other."""
+    """The bundler's waiting times."""
     every_s = config.bundler.wait_s
-    waits_s = {one.id: every_s if one.wait_s is None else one.wait_s for one in config.camera}
+    waits_s = {c.id: every_s if c.wait_s is None else c.wait_s for c in config.camera}
     return BundlerParams(camera_waits_s={k: s for k, s in waits_s.items() if s is not None})
 
 
 def picture_size(camera: CameraSection) -> tuple[int, int]:
-    """Width and height [px] of the pictures to come: a recording or network camera is asked, a webcam
-    will be told. Raises MocapdError when there is no picture."""
+    """Picture size (width, height) [px]: of a webcam the requested one, of other sources that of their first picture.
+    Raises MocapdError without a picture."""
     source = open_source(camera.source, SourceRequest(camera.id))
     if is_settable(camera.source):
         return WebcamSettings().size_px
@@ -97,7 +96,7 @@ def picture_size(camera: CameraSection) -> tuple[int, int]:
 
 
 def in_rig_order(cameras: Sequence[CameraSection], rig: Rig | None) -> tuple[CameraSection, ...]:
-    """The cameras as the rig has them. Raises ConfigError for one that it has not."""
+    """The cameras in the rig's order. Raises ConfigError for one outside the rig."""
     if rig is None:
         return tuple(cameras)
     for camera in cameras:

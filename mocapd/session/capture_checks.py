@@ -1,4 +1,4 @@
-"""Checks a recording's rig and times against what it shows, before it is tracked, and corrects what surely is wrong."""
+"""Checks rig and times of a recording against its pictures before tracking; corrects significant time offsets."""
 
 import logging
 from collections.abc import Iterator
@@ -13,18 +13,18 @@ from mocapd.types import FrameSet, Rig
 _log = logging.getLogger(__name__)
 
 _LEAST_LOOKED = 2  # views of two cameras
-_LONGEST_S = 60.0  # of a recording, that is looked at until enough has moved
+_LONGEST_S = 60.0  # longest part of a recording that is checked
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CheckedCapture:
-    """A recording, and what its checks found."""
+    """A recording and the result of its checks."""
 
     origin: Origin
     result: CheckResult
 
     def frame_sets(self) -> Iterator[FrameSet]:
-        """All of it once, with the times of cameras that were surely late corrected."""
+        """All frame sets once, with significant camera delays corrected."""
         late_s = self.result.late_s
         sets = self.origin.frame_sets()
         if not late_s:
@@ -35,7 +35,7 @@ class CheckedCapture:
 def check_capture(
     origin: Origin, rig: Rig | None = None, stature_m: float | None = None
 ) -> CheckedCapture:
-    """Look at the beginning of a recording; says in the log what does not agree. rig: where it is not the recording's own."""
+    """Checks the beginning of a recording and logs contradictions. rig: overrides the recording's own."""
     check = CaptureCheck(rig or origin.rig, stature_m or origin.stature_m)
     for number, frames in enumerate(origin.frame_sets()):
         for frame in frames.frames.values():
@@ -45,7 +45,7 @@ def check_capture(
     result = check.result()
     if result.looked < _LEAST_LOOKED and len(check.names) > 1:
         _log.info(
-            "%s: too little of a person is seen by two cameras at once to compare the rig with what it shows",
+            "%s: two cameras show too little of a person at once to compare the rig with the pictures",
             origin.rig_source,
         )
     for finding in result.findings:

@@ -1,4 +1,4 @@
-"""Track a recorded capture: every frame in order, as fast as the tracker goes; and the track's file."""
+"""Tracks a recorded capture, every frame in order at full speed, and writes the track's file."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
@@ -18,21 +18,21 @@ from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Floats, FrameSet
 
 SCHEMA = "mocapd.Track.v1"
-# By the archive's first member: other arrays, such as a capture's, are of other kinds.
+# Identified by the archive's first member, as other npz files exist.
 _TRACK = FileKind(
     "a track", lambda head: head.startswith(b"PK\x03\x04") and head[30:40] == b"schema.npy"
 )
-_ROOM_LOOKS = 60  # pictures of each camera from which a room is learned: they are kept meanwhile
+_ROOM_LOOKS = 60  # pictures of each camera to learn a room from, all in memory
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RecordedTrack:
-    """F frames of J joints; frames in which nobody was tracked are absent.
+    """F frames of J joints; frames without a tracked person are absent.
 
     times_s (F,): since the capture's start [s]; joints_m (F,J,3) [m, world]; global_xyzw (F,J,4):
     rotations relative to the T-pose; confidence (F,J) 0..1; tracker (F,); uncertainty_m (F,J): as in BodyState,
-    inf where it is unknown, and everywhere when left out; unrecognised: frames in which somebody moves who is not taken for a
-    person.
+    inf where it is unknown, and everywhere when omitted; unrecognised: number of frames with motion that is not
+    recognised as a person.
     """
 
     times_s: Floats
@@ -50,8 +50,8 @@ class RecordedTrack:
 
 
 def learn_room(tracker: Tracker, frames: Iterable[FrameSet], count: int) -> None:
-    """Let a tracker learn the empty room from some of the frame sets of a recording, of which there are about `count`. Raises
-    ConfigError when it learns none."""
+    """Lets a tracker learn the empty room from a sample of a recording's frame sets. count: their approximate number.
+    Raises ConfigError for a tracker that learns no room."""
     if not isinstance(tracker, RoomLearner):
         raise ConfigError(
             f"the tracker {tracker.name!r} learns no room", "--room", "leave it out, or add --tracker markerless"
@@ -66,13 +66,13 @@ def track_all(
     on_frame: Callable[[int], None],
     off_m: float = 0.0,
 ) -> RecordedTrack:
-    """Step the tracker through all frame sets of a wearer of this shape; `on_frame` is told how many are done. off_m: by
-    how much the cameras' views contradict each other for good."""
+    """Steps the tracker through all frame sets. shape: the wearer's; on_frame: called with the number of finished frames;
+    off_m: lasting disagreement of the cameras' views [m]."""
     names = skeleton_of(shape).names
     times, joints, quats, confidence, by, uncertainty = [], [], [], [], [], []
     unrecognised = 0
-    for done, one in enumerate(frames, start=1):
-        track = tracker.step(one, shape)
+    for done, frame_set in enumerate(frames, start=1):
+        track = tracker.step(frame_set, shape)
         body, shape = doubted(track.body, off_m), track.shape
         unrecognised += track.lost_reason is LostReason.UNRECOGNISED
         if body.pose is not None and body.joints_m is not None:
@@ -97,12 +97,12 @@ def track_all(
 
 
 def track_file(path: Path, force: bool = False, inputs: Sequence[Path] = ()) -> OutputFile:
-    """Where a track is written. For the rest see OutputFile."""
+    """The output file of a track; see OutputFile."""
     return OutputFile(path, _TRACK, force, inputs)
 
 
 def why_missing(track: RecordedTrack, count: int) -> str:
-    """In a line for people, why some of `count` frames have nobody though somebody moves in them; empty: it is not so."""
+    """A line for users: why frames with motion have no person; empty without such frames. count: all frames."""
     if not track.unrecognised:
         return ""
     reason = LostReason.UNRECOGNISED
@@ -110,7 +110,7 @@ def why_missing(track: RecordedTrack, count: int) -> str:
 
 
 def write_track(out: OutputFile | Path, track: RecordedTrack) -> None:
-    """Write the npz that score_track.py reads, whole or not at all. Raises CannotCreateError.
+    """Writes the npz that score_track.py reads, atomically. Raises CannotCreateError.
 
     The same track gives the same bytes.
     """

@@ -1,4 +1,4 @@
-"""What this code was prepared for before: a line for each in a file of the cache folder."""
+"""Marker file in the cache folder: one fingerprint per line of code and configuration that were prepared."""
 
 import hashlib
 import logging
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mocapd.config.sections import Config
 
 MARKER = "prepared"
-LOCK = "prepared.lock"  # held by who prepares
+LOCK = "prepared.lock"  # held during preparation
 REMEMBERED = 8
 _MOST_BYTES = 1 << 16
 
@@ -25,15 +25,15 @@ _log = logging.getLogger(__name__)
 
 
 def is_prepared(config: "Config", what: str = "") -> bool:
-    """Whether this code, with this tracker, was prepared; `what`: only a part, everything when empty. False where the
-    marker cannot be read: then all is prepared once more."""
-    return _fingerprint(config, what) in _remembered(config.cache_dir / MARKER)
+    """True if this code was prepared with this tracker; `what`: a part of it, everything when empty. False for an
+    unreadable marker, so that everything is prepared again."""
+    return _fingerprint(config, what) in _read_fingerprints(config.cache_dir / MARKER)
 
 
 def remember(config: "Config", what: str = "") -> None:
-    """It is prepared. A marker that cannot be written is a warning."""
+    """Marks it as prepared. Logs a warning when the marker cannot be written."""
     marker, now = config.cache_dir / MARKER, _fingerprint(config, what)
-    done = _remembered(marker)
+    done = _read_fingerprints(marker)
     if now in done:
         return
     try:
@@ -46,7 +46,7 @@ def remember(config: "Config", what: str = "") -> None:
         )
 
 
-def _remembered(marker: Path) -> list[str]:
+def _read_fingerprints(marker: Path) -> list[str]:
     try:
         return read_text(marker, _MOST_BYTES).split()
     except InputError:
@@ -54,13 +54,13 @@ def _remembered(marker: Path) -> list[str]:
 
 
 def _fingerprint(config: "Config", what: str) -> str:
-    """Of everything that compiled code and caches depend on."""
+    """Hash of everything that compiled code and caches depend on."""
     package = Path(mocapd.__file__).parent
     digest = hashlib.sha256()
     for path in sorted(package.rglob("*.py")):
         stat = path.stat()
         digest.update(f"{path} {stat.st_size} {stat.st_mtime_ns}\n".encode())
-    # what draws simulated webcams is compiled for them alone
+    # the renderer is compiled for simulated webcams only
     tracker = config.tracker.name
     if any(is_simulated(camera.source) for camera in config.camera):
         tracker += " simulated"

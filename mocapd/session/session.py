@@ -1,7 +1,7 @@
-"""What one run of the daemon works on: cameras, rig and tracker, from the configuration.
+"""A session of the daemon: cameras, rig and tracker, from the configuration.
 
-The saved calibration gives cameras, rig, wearer and colours. So do cameras that are all of one capture
-folder, or all of one simulated scenario. What the configuration gives itself wins.
+The saved calibration gives cameras, rig, wearer and colours. So does a capture folder or simulated scenario that all
+cameras share. Values of the configuration take precedence.
 """
 
 import logging
@@ -23,7 +23,7 @@ from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
 from mocapd.geometry.rig_file import load_rig
 from mocapd.session.camera_inputs import CameraInput, camera_inputs, in_rig_order, picture_size
-from mocapd.session.tracker_setup import Progress, cached, ready_tracker
+from mocapd.session.tracker_setup import Progress, cache_resources, ready_tracker
 from mocapd.shirt.colour.model_pictures import read_model, stroked_folder, stroked_image
 from mocapd.shirt.colour.strokes import read_labelled
 from mocapd.trackers.registry import entry, require_calibration
@@ -35,36 +35,35 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Session:
-    """rig_source: the file or scenario that the rig is from, for people; shape: the wearer's, for the tracker's
-    first step; known: what the tracker was built with; calibrated: when, where a saved calibration says so (UTC)."""
+    """rig_source: file or scenario of the rig, for users; shape: the wearer's, for the first step; calibration: the
+    tracker's; calibrated: time of a saved calibration (UTC)."""
 
     cameras: tuple[CameraInput, ...]
     rig: Rig | None
     rig_source: str
     tracker: Tracker
     shape: BodyShape
-    known: Calibration = field(default_factory=Calibration)
+    calibration: Calibration = field(default_factory=Calibration)
     calibrated: datetime | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SessionPlan:
-    """What a configuration comes to before anything is opened or made. cameras: configured, else calibrated; origin: of
-    all of them, empty where there is none; known: from configuration and calibration; rig_source, calibrated: see
-    Session."""
+    """The resolved configuration, before any device is opened. cameras: configured, else calibrated; origin: of all
+    cameras, may be empty; calibration: of configuration and calibration file; rig_source, calibrated: see Session."""
 
     config: Config
     cameras: tuple[CameraSection, ...]
     origin: str
-    known: Calibration
+    calibration: Calibration
     rig_source: str
     calibrated: datetime | None
 
     @property
     def assumes_rig(self) -> bool:
-        """Whether there is one camera, and nothing says where."""
+        """True for a single camera without a calibration, whose pose is assumed."""
         return (
-            self.known.rig is None
+            self.calibration.rig is None
             and not self.origin
             and len(self.cameras) == 1
             and entry(self.config.tracker.name).sees
@@ -72,45 +71,56 @@ class SessionPlan:
 
 
 def open_session(config: Config, progress: Progress) -> Session:
-    """Check and prepare everything; `progress` hears what is made for the first time and takes long. Raises
-    ConfigError, InputError or CannotCreateError."""
+    """Checks and prepares everything; `progress` reports long first-time work. Raises ConfigError, InputError or
+    CannotCreateError."""
     plan = plan_session(config)
     return open_planned(plan, progress)
 
 
 def plan_session(config: Config) -> SessionPlan:
-    """Check what can be checked at once. Raises ConfigError or InputError."""
+    """Runs the fast checks. Raises ConfigError or InputError."""
     saved = find_calibration(config.rig, config.state_dir, config.sources)
     cameras = session_cameras(config.camera, saved, config.state_dir)
     origin = common_origin(camera.source for camera in cameras)
-    known, rig_source, calibrated = Calibration(), "", None
+    calibration, rig_source, calibrated = Calibration(), "", None
     if saved is not None:
-        known, rig_source, calibrated = saved.calibration, str(saved.path), saved.tables.made.when
+        calibration, rig_source = saved.calibration, str(saved.path)
+        calibrated = saved.tables.made.when
     elif config.rig is not None:
-        known, rig_source = Calibration(load_rig(config.rig)), str(config.rig)
-    cameras = in_rig_order(cameras, known.rig)
-    known = known.overlaid(Calibration(shirt=_configured_shirt(config.shirt.colour_model, cameras)))
-    plan = SessionPlan(config, cameras, origin, known, rig_source, calibrated)
+        calibration, rig_source = Calibration(load_rig(config.rig)), str(config.rig)
+    cameras = in_rig_order(cameras, calibration.rig)
+    shirt = _configured_shirt(config.shirt.colour_model, cameras)
+    calibration = calibration.overlaid(Calibration(shirt=shirt))
+    plan = SessionPlan(config, cameras, origin, calibration, rig_source, calibrated)
     if not origin and not plan.assumes_rig:
-        require_calibration(config.tracker.name, known)
+        require_calibration(config.tracker.name, calibration)
     return plan
 
 
 def open_planned(plan: SessionPlan, progress: Progress, is_beginning: bool = False) -> Session:
-    """The rest of `open_session`; is_beginning: see `open_origin`."""
+    """The second part of `open_session`; is_beginning: see `open_origin`."""
     cache_dir, tracker = plan.config.cache_dir, plan.config.tracker
-    known, rig_source = plan.known, plan.rig_source
+    calibration, rig_source = plan.calibration, plan.rig_source
     if plan.assumes_rig:
-        known, rig_source = replace(known, rig=_assumed_rig(plan.cameras[0])), "assumed"
+        calibration = replace(calibration, rig=_assumed_rig(plan.cameras[0]))
+        rig_source = "assumed"
     origin = open_origin(plan.origin, cache_dir, progress, is_beginning) if plan.origin else None
     if origin is not None and plan.calibrated is None:
-        known, rig_source = from_origin(origin).overlaid(known), rig_source or origin.rig_source
-    inputs = camera_inputs(plan.cameras, known.rig, origin)
-    resources = cached(cache_dir, progress, tracker.tracking)
+        calibration = from_origin(origin).overlaid(calibration)
+        rig_source = rig_source or origin.rig_source
+    inputs = camera_inputs(plan.cameras, calibration.rig, origin)
+    resources = cache_resources(cache_dir, progress, tracker.tracking)
     rehearsal = partial(progress, "preparing the tracker")
-    ready = ready_tracker(tracker.name, known.assuming(tracker.stature_m), resources, rehearsal)
+    assumed = calibration.assuming(tracker.stature_m)
+    ready = ready_tracker(tracker.name, assumed, resources, rehearsal)
     return Session(
-        inputs, known.rig, rig_source, ready.tracker, ready.shape, known, plan.calibrated
+        inputs,
+        calibration.rig,
+        rig_source,
+        ready.tracker,
+        ready.shape,
+        calibration,
+        plan.calibrated,
     )
 
 
@@ -124,8 +134,8 @@ def cameras_of(capture: str) -> tuple[CameraSection, ...]:
 def session_cameras(
     configured: tuple[CameraSection, ...], saved: LoadedCalibration | None, state_dir: Path
 ) -> tuple[CameraSection, ...]:
-    """The configured cameras, else the calibrated ones as a configuration has them. Raises ConfigError where there are
-    none, or a password is missing."""
+    """The configured cameras, else the calibrated ones. Raises ConfigError where there are none, or a password is
+    missing."""
     if configured:
         return configured
     if saved is None:
@@ -138,17 +148,17 @@ def session_cameras(
     place = str(saved.path.parent)
     return tuple(
         CameraSection(
-            one.id,
-            require_password(one.id, one.source, place),
-            one.fps_hz,
-            controls=ControlsSection(**asdict(one.controls)),
+            camera.id,
+            require_password(camera.id, camera.source, place),
+            camera.fps_hz,
+            controls=ControlsSection(**asdict(camera.controls)),
         )
-        for one in saved.tables.camera
+        for camera in saved.tables.camera
     )
 
 
 def _configured_shirt(model: Path | None, cameras: Iterable[CameraSection]) -> ShirtColours:
-    """The pictures of the shirt that the configuration names. Raises InputError or ConfigError."""
+    """The configured pictures of the shirt. Raises InputError or ConfigError."""
     return ShirtColours(
         read_model(stroked_folder(model)) if model else (),
         {
@@ -160,7 +170,7 @@ def _configured_shirt(model: Path | None, cameras: Iterable[CameraSection]) -> S
 
 
 def _assumed_rig(camera: CameraSection) -> Rig:
-    """Where one camera without calibration probably is; says so."""
+    """A plausible rig of one camera without calibration; logs a warning."""
     _log.warning(
         "camera %r is not calibrated: assumed are a field of view of %.0f degrees and a place %.1f m"
         " high and %.1f m before the person, so distances and sizes will be off -- give a rig file"

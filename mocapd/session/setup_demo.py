@@ -22,10 +22,10 @@ SCENARIO = "first_setup"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Demo:
-    """The cameras (id, source) before one stage; `stage.play(scene)` tells what happens there.
+    """Cameras (id, source) that film one stage; `stage.play(scene)` chooses the scene.
 
-    source_of(id) is what a configuration calls the camera afterwards. board: the one that is shown;
-    rig: where the cameras truly are, which the setup is to find out.
+    source_of(id): the camera's address for a configuration. board: the board in the scenes; rig: ground truth of the
+    calibration.
     """
 
     cameras: tuple[tuple[str, SceneSource], ...]
@@ -36,17 +36,17 @@ class Demo:
 
     @staticmethod
     def source_of(camera: str) -> str:
-        """`sim:...`: the same camera, with the wearer's motion over and over."""
+        """`sim:...`: the same camera, with the wearer's motion in a loop."""
         return camera_address(scenario_address(SCENARIO), camera)
 
     @property
     def fps_hz(self) -> float:
-        """Of all cameras."""
+        """The rate of all cameras."""
         return self.stage.scenario.fps_hz
 
 
 def open_demo(cache_dir: Path, progress: Progress) -> Demo:
-    """The demonstration, its pictures rendered when they are not in the cache. Raises MocapdError."""
+    """Opens the demo; renders its pictures unless they are cached. Raises MocapdError."""
     scenario = load_scenario(asset_path(f"scenarios/{SCENARIO}.toml"))
     film = load_film(
         scenario, cache_dir, lambda done, total: progress("rendering the wearer", done, total)

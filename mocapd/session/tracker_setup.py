@@ -1,4 +1,4 @@
-"""The one place where a tracker is built and rehearsed, and what it keeps in the cache is made."""
+"""Builds a tracker, warms it up, and makes its caches."""
 
 import logging
 from collections.abc import Callable, Iterator, Mapping
@@ -12,20 +12,20 @@ from mocapd.body.shape import BodyShape
 from mocapd.calibration.calibration_record import Calibration, ShirtColours
 from mocapd.clock import monotonic_ns
 from mocapd.pipeline.rehearsal import rehearse
-from mocapd.session.side_by_side import each_camera
+from mocapd.session.worker_thread import each_camera
 from mocapd.trackers import registry
 from mocapd.trackers.registry import Resources, build
 from mocapd.tracking.base import Tracker
 from mocapd.tracking.known import known_shape
 from mocapd.tracking.tracking_state import TrackingStateParams
 
-Progress = Callable[[str, int, int], None]  # what is being made, parts done, parts in all
+Progress = Callable[[str, int, int], None]  # task, parts done, parts in all
 
 _log = logging.getLogger(__name__)
-_THREADS = 2  # that make what is kept in the cache
+_THREADS = 2  # that make caches
 
 
-def _itself(tracker: Tracker) -> Tracker:
+def _identity(tracker: Tracker) -> Tracker:
     return tracker
 
 
@@ -42,38 +42,38 @@ def ready_tracker(
     calibration: Calibration,
     resources: Resources,
     rehearsal: Callable[[int, int], None] | None = None,
-    watched: Callable[[Tracker], Tracker] = _itself,
+    watched: Callable[[Tracker], Tracker] = _identity,
 ) -> ReadyTracker:
-    """The tracker of this name, ready to step. Raises ConfigError naming what it lacks.
+    """Builds a tracker, ready to step. Raises ConfigError that names missing inputs.
 
-    rehearsal: hears of steps done, in all, while the tracker is stepped through the calibration's own pictures, so
-    that live frames need not wait; None for recordings, which can. watched: puts another around it that is rehearsed with it.
+    rehearsal: called with (steps done, steps in all) during a warm-up on the calibration's pictures, which spares live
+    frames the delay; None for recordings. watched: wraps the tracker before the warm-up.
     """
     shape = known_shape(calibration)
     if rehearsal is not None:
         resources = replace(resources, now_ns=monotonic_ns)
-    with _pooled(resources) as pooled:
+    with _with_pool(resources) as pooled:
         tracker = watched(build(name, calibration, pooled))
     if rehearsal is not None:
         shirt = calibration.shirt or ShirtColours()
-        pictures = {camera: one.pixels for camera, one in shirt.white_balance.items()}
+        pictures = {camera: p.pixels for camera, p in shirt.white_balance.items()}
         rehearse(tracker, shape, calibration.rig, pictures, rehearsal)
     return ReadyTracker(tracker, shape)
 
 
 def make_caches(name: str, cache_dir: Path, progress: Progress) -> None:
-    """What this tracker keeps in the cache folder, made if need be."""
-    with _pooled(cached(cache_dir, progress)) as pooled:
+    """Makes missing caches of this tracker in the cache folder."""
+    with _with_pool(cache_resources(cache_dir, progress)) as pooled:
         registry.make_caches(name, pooled)
 
 
-def cached(
+def cache_resources(
     cache_dir: Path,
     progress: Progress,
     tracking: TrackingStateParams | None = None,
     params: Mapping[str, Any] | None = None,
 ) -> Resources:
-    """With a place for what is made once, and bars while it is made; params: see Resources."""
+    """Resources with a cache folder and progress bars; params: see Resources."""
     return Resources(
         cache_dir=cache_dir,
         progress=lambda share: progress("pose database", round(100 * share), 100),
@@ -83,11 +83,11 @@ def cached(
 
 
 @contextmanager
-def _pooled(resources: Resources) -> Iterator[Resources]:
-    """With threads to make caches, and a log to tell of them."""
+def _with_pool(resources: Resources) -> Iterator[Resources]:
+    """Adds threads that make caches, and a log."""
     pool = ThreadPoolExecutor(_THREADS)
     try:
         yield replace(resources, map_chunks=pool.map, warn=_log.warning, each=each_camera())
     finally:
-        # who was told to end does not wait for all that is queued
+        # an interrupted process does not wait for queued work
         pool.shutdown(wait=False, cancel_futures=True)

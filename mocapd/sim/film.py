@@ -18,7 +18,7 @@ import numpy as np
 import mocapd.body
 import mocapd.sim
 from mocapd.assets import asset_path
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.image_decoding import decode_picture
 from mocapd.sim.cache_file import read_or_make
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup_record import SimSetup

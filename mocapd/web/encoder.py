@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 import cv2
 import numpy as np
 
-from mocapd.boundary.pictures import is_plain_jpeg
+from mocapd.boundary.image_decoding import is_plain_jpeg
 from mocapd.clock import nanoseconds
 from mocapd.errors import MalformedError
 from mocapd.pipeline.body_hub import BodySample

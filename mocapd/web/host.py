@@ -2,10 +2,10 @@
 
 from typing import Protocol
 
-from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.service.recordings import Recordings
+from mocapd.service.recordings_folder import Recordings
 from mocapd.service.service import Snapshot
 from mocapd.types import Rig
 from mocapd.wizard.wizard import Wizard
@@ -24,7 +24,7 @@ class Host(Protocol):
         """The calibration in use; None without one."""
         ...
 
-    def known(self) -> RecordedKnown:
+    def known(self) -> RecordingMetadata:
         """The set-up of cameras and wearer, for a recording."""
         ...
 

@@ -16,7 +16,7 @@ from prometheus_client.registry import Collector
 import mocapd
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.pipeline.latency_histogram import BOUNDS_MS, LatencyCounts
-from mocapd.service.fitness import FITNESSES, delivers, fitness_of
+from mocapd.service.readiness import READINESS_STATES, delivers, readiness_of
 from mocapd.service.service import Snapshot
 from mocapd.tracking.effort import Effort
 
@@ -48,8 +48,8 @@ def _families(snapshot: Snapshot) -> Families:
     metrics = snapshot.metrics
     yield InfoMetricFamily("mocapd", "This mocapd", {"version": mocapd.__version__})
     fitness = GaugeMetricFamily("mocapd_state", "1 for the state it is in", labels=["state"])
-    now = fitness_of(snapshot)
-    for one in FITNESSES:
+    now = readiness_of(snapshot)
+    for one in READINESS_STATES:
         fitness.add_metric([one], float(one == now))
     yield fitness
     yield CounterMetricFamily(

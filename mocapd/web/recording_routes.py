@@ -16,7 +16,7 @@ from starlette.routing import Route
 
 from mocapd.boundary.parsing import decode_json
 from mocapd.errors import MalformedError, MocapdError, UnavailableError
-from mocapd.service.recordings import Name, Notes, Recordings
+from mocapd.service.recordings_folder import Name, Notes, Recordings
 from mocapd.web.host import Host
 from mocapd.web.request_body import BodyTooLongError, read_body
 from mocapd.web.shown_json import as_json
@@ -95,7 +95,7 @@ class RecordingRoutes:
         id_, format_ = request.path_params["id"], request.path_params["format"]
 
         def export() -> Response:
-            data = self._recordings.exported(id_, format_)
+            data = self._recordings.export(id_, format_)
             name = self._recordings.file_name(id_, format_)
             return _download(data, name, _MEDIA_TYPES.get(format_, "application/octet-stream"))
 

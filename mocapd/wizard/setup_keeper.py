@@ -13,7 +13,7 @@ from mocapd.boundary.urls import without_password
 from mocapd.calibration.calibration_writing import remove_setup
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import CannotCreateError, InputError, MocapdError, NewerFileError
-from mocapd.set_aside import Why, set_aside
+from mocapd.quarantine import Why, quarantine
 from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -171,7 +171,7 @@ class SetupKeeper:
         """Move an unreadable file away, as another mocapd may still use it."""
         with suppress(OSError):  # then the next start tries again
             why: Why = "newer" if isinstance(error, NewerFileError) else "corrupt"
-            moved_to = set_aside(self._path, why)
+            moved_to = quarantine(self._path, why)
             _log.warning(
                 "%s: the unfinished setup cannot be used (%s), and is now %s",
                 *(self._path, error.what, moved_to.name),

@@ -12,7 +12,7 @@ from mocapd.app.recordings.recording_run import Recorder, duration
 from mocapd.app.terminal.status_line import StatusLine
 from mocapd.boundary.mcap_records import McapAttachment, McapFile
 from mocapd.capture.recording.mcap_origin import open_recording
-from mocapd.capture.recording.recorded_known import known_of
+from mocapd.capture.recording.recording_metadata import metadata_of
 from mocapd.client import Link
 from mocapd.errors import InputError, UnavailableError
 from mocapd.outputs.mcap.recording_reader import RecordingReader
@@ -70,7 +70,7 @@ def test_the_rig_is_attached_as_a_rig_file(tmp_path: Path) -> None:
     with running_sink() as running:
         recorded(running, tmp_path / "a.mcap")
     items = McapFile(tmp_path / "a.mcap").items(lambda _topic, _schema: False)
-    known = known_of((one for one in items if isinstance(one, McapAttachment)), "here")
+    known = metadata_of((one for one in items if isinstance(one, McapAttachment)), "here")
     assert known.rig is not None
     assert known.rig.names == ("cam0", "cam1")
     assert known.stature_m == 1.75

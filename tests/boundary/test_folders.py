@@ -56,7 +56,7 @@ def test_a_folder_in_which_others_can_put_another_in_its_place_is_refused(tmp_pa
     (tmp_path / "link").symlink_to(tmp_path / "shared" / "cache")
     (tmp_path / "shared").chmod(0o777)
     for path in (tmp_path / "shared" / "cache", tmp_path / "link"):
-        with pytest.raises(PermissionDeniedError, match="in its place"):
+        with pytest.raises(PermissionDeniedError, match="every user can replace it"):
             require_own_folder(path)
     (tmp_path / "shared").chmod(0o1777)  # as /tmp is
     require_own_folder(tmp_path / "shared" / "cache")

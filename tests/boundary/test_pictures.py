@@ -16,7 +16,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mocapd.boundary.pictures import decode_camera_picture, decode_picture, read_header
+from mocapd.boundary.image_decoding import decode_camera_picture, decode_picture, read_header
 from mocapd.errors import MalformedError
 from mocapd.types import Bytes
 from tests.fuzz import large_pictures
@@ -169,7 +169,7 @@ def test_what_stands_beside_a_picture_in_a_png_is_not_handed_to_the_decoder(tmp_
     path = tmp_path / "odd.png"
     path.write_bytes(good[:at] + b"".join(map(chunk, odd, [b"x"] * len(odd))) + good[at:])
     program = (
-        "import sys, cv2; from pathlib import Path; from mocapd.boundary.pictures import decode_picture\n"
+        "import sys, cv2; from pathlib import Path; from mocapd.boundary.image_decoding import decode_picture\n"
         "sys.stdout.buffer.write(decode_picture(Path(sys.argv[1]).read_bytes(), cv2.IMREAD_COLOR).tobytes())"
     )
     ran = subprocess.run(

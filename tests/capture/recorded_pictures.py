@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from mocapd.capture.capture_folder import frame_sets, load_folder
-from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
 from mocapd.types import LabelledPicture
 from tests.capture.films import write_capture
@@ -28,7 +28,7 @@ def recorded_capture(
     strokes = np.zeros((48, 64), np.uint8)
     strokes[5:9, 5:9] = 3
     labelled = LabelledPicture(np.full((48, 64, 3), 99, np.uint8), strokes)
-    known = RecordedKnown(loaded.rig, 1.72, (labelled,), {"cam1": labelled})
+    known = RecordingMetadata(loaded.rig, 1.72, (labelled,), {"cam1": labelled})
     path = folder / "recorded.mcap"
     with RecordingWriter(path, RecordingParams(), START_NS) as writer:
         writer.attach(known, START_NS)

@@ -9,7 +9,7 @@ from tests.attacks.node_kinds import KINDS
 PICTURES = 300
 PROGRAM = """
 import logging, os, sys
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.decoder_warnings import DecoderWarnings
 
 logging.basicConfig(format="%(message)s")

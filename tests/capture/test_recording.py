@@ -7,13 +7,13 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.image_decoding import decode_picture
 from mocapd.capture.capture_folder import frame_sets, load_folder
 from mocapd.capture.frame_groups import as_set
 from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.capture.kinds.source_kinds import cameras_of_origin, open_origin, open_source, origin_of
 from mocapd.capture.pace import Pace
-from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import monotonic_ns
 from mocapd.errors import ConfigError, EndOfStream, InputError
@@ -123,7 +123,7 @@ def test_what_is_missing_in_it_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="where its cameras stood"):
         sets_of(str(tmp_path / "a.mcap"))
     with RecordingWriter(tmp_path / "b.mcap", RecordingParams(), 0) as writer:
-        writer.attach(RecordedKnown(), START_NS)
+        writer.attach(RecordingMetadata(), START_NS)
     with pytest.raises(InputError, match="no pictures"):
         sets_of(str(tmp_path / "b.mcap"))
     with pytest.raises(InputError, match="no such"):
@@ -134,7 +134,7 @@ def test_a_camera_that_its_rig_does_not_know_is_named(tmp_path: Path) -> None:
     """Else its pictures would be passed over in silence, and a person be tracked by fewer cameras than were recorded."""
     rig = Rig(ring(2))
     with RecordingWriter(tmp_path / "a.mcap", RecordingParams(), 0) as writer:
-        writer.attach(RecordedKnown(rig), START_NS)
+        writer.attach(RecordingMetadata(rig), START_NS)
         for name in (*rig.names, "stranger"):
             writer.picture(name, 0, START_NS, b"")
     with pytest.raises(InputError, match="no camera 'stranger'"):
@@ -143,10 +143,10 @@ def test_a_camera_that_its_rig_does_not_know_is_named(tmp_path: Path) -> None:
 
 def test_no_address_of_a_camera_is_in_it(tmp_path: Path) -> None:
     """Rig and pictures only: the fields of a rig file have no place for one."""
-    from mocapd.capture.recording.recorded_known import attachments_of
+    from mocapd.capture.recording.recording_metadata import attachments_of
 
     label = LabelledPicture(np.zeros((4, 4, 3), np.uint8), np.zeros((4, 4), np.uint8))
-    known = RecordedKnown(Rig(ring(2)), 1.8, (label,), {"cam0": label})
+    known = RecordingMetadata(Rig(ring(2)), 1.8, (label,), {"cam0": label})
     names = [one.name for one in attachments_of(known)]
     assert names == [
         "rig.json",

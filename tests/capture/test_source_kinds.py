@@ -7,7 +7,7 @@ import pytest
 from mocapd.capture.file import FileSource
 from mocapd.capture.kinds.source_kinds import (
     SOURCE_FORMS,
-    address_beside,
+    address_in_folder,
     cameras_of_origin,
     identities_of,
     is_settable,
@@ -158,10 +158,10 @@ def test_webcams_are_told_by_their_identity() -> None:
 
 def test_paths_of_a_file_are_meant_from_its_folder_and_nothing_else_is(place: Path) -> None:
     for address in (f"{FOLDER}#cam0", FOLDER, FILM):
-        assert address_beside(place, address) == str(place / address)
-        assert address_beside(Path("/"), str(place / address)) == str(place / address)
+        assert address_in_folder(place, address) == str(place / address)
+        assert address_in_folder(Path("/"), str(place / address)) == str(place / address)
     for address in ("0", "usb:1-3:046d:0825:", "http://film/x", "sim:living_room#left", NOWHERE):
-        assert address_beside(place, address) == address
+        assert address_in_folder(place, address) == address
 
 
 def test_an_origin_knows_its_cameras_its_rig_and_its_frames(place: Path) -> None:

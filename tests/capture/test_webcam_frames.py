@@ -168,14 +168,14 @@ def test_a_webcam_of_another_format_is_refused() -> None:
 def test_values_take_effect_because_the_automatic_goes_off_first() -> None:
     camera = StubbornCamera()
     results = apply_controls(camera, Controls(exposure=100, wb_temperature=5000))
-    assert all(one.applied for one in results)
+    assert all(one.is_applied for one in results)
     assert camera.held[cv2.CAP_PROP_EXPOSURE] == 100.0
     assert camera.held[cv2.CAP_PROP_WB_TEMPERATURE] == 5000.0
 
 
 def test_what_was_not_applied_shows_though_set_said_yes() -> None:
     results = apply_controls(StubbornCamera(), Controls(gain=999, focus=30))
-    assert {one.name: (one.asked, one.got) for one in results if not one.applied} == {
+    assert {one.name: (one.asked, one.got) for one in results if not one.is_applied} == {
         "gain": (999.0, 255.0),
         "autofocus": (0.0, -1.0),
         "focus": (30.0, -1.0),

@@ -45,7 +45,7 @@ def origin(effective: Effective, path: str) -> str:
 
 def test_without_any_source_everything_is_built_in() -> None:
     effective = load_config(env={}, candidates=())
-    assert not any(setting.changed for setting in effective.settings)
+    assert not any(setting.is_changed for setting in effective.settings)
     assert zenoh_section(effective.config.outputs).port == 7447
     assert effective.file is None
 

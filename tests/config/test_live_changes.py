@@ -1,7 +1,7 @@
 """What a running daemon takes up of a changed configuration, and what it keeps and says so."""
 
 from mocapd.config.effective import load_config
-from mocapd.config.live_changes import taken_live
+from mocapd.config.live_changes import apply_live_changes
 from mocapd.config.sections import Config
 
 
@@ -21,14 +21,14 @@ def test_tracker_smoothing_and_cameras_change_at_once() -> None:
         tracker__stature_m="1.6",
         camera='[{id = "a", source = "/dev/video0"}]',
     )
-    assert taken_live(RUNNING, wanted) == (wanted, ())
+    assert apply_live_changes(RUNNING, wanted) == (wanted, ())
 
 
 def test_outputs_page_name_and_folders_wait_for_the_next_start_each_by_its_name() -> None:
     wanted = config_of(
         instance="gym", osc__enabled="false", state_dir="elsewhere", smoothing__preset="off"
     )
-    config, waiting = taken_live(RUNNING, wanted)
+    config, waiting = apply_live_changes(RUNNING, wanted)
     assert waiting == ("instance", "state_dir", "web", "osc")
     assert config.instance == "hall"
     assert config.outputs == RUNNING.outputs

@@ -17,10 +17,9 @@ import msgspec
 import pytest
 
 from mocapd.config.runtime_folder import folders_to_look_in, runtime_folder
-from mocapd.control.control_client import Found, RunningDaemon, running_daemons
+from mocapd.control.control_client import FoundDaemons, RunningDaemon, running_daemons
 from mocapd.control.control_messages import Recentered, Reloaded, StatusReport, Verb
 from mocapd.control.control_socket import LONGEST_REQUEST, MOST_AT_ONCE, ControlSocket
-from mocapd.control.meant import why_none
 from mocapd.control.socket_place import (
     closed_folders,
     service_sockets,
@@ -28,6 +27,7 @@ from mocapd.control.socket_place import (
     socket_path,
     sockets_in,
 )
+from mocapd.control.target_process import no_daemon_error
 from mocapd.errors import CannotCreateError, ConfigError, MocapdError, UnavailableError
 from tests.control.reports import report
 from tests.outputs.frames import eventually
@@ -77,7 +77,7 @@ def _hang_up(listening: socket.socket) -> None:
     connection.close()
 
 
-def found(folder: Path) -> Found:
+def found(folder: Path) -> FoundDaemons:
     return running_daemons((folder,), services=())
 
 
@@ -129,7 +129,7 @@ def test_the_file_is_for_its_user_alone_and_goes_with_the_daemon(folder: Path) -
 def test_what_a_killed_daemon_left_is_removed_and_in_nobodys_way(folder: Path) -> None:
     with socket.socket(socket.AF_UNIX) as left, short_address(socket_path(folder, 77)) as address:
         left.bind(address)
-    assert found(folder) == Found()
+    assert found(folder) == FoundDaemons()
     assert sockets_in(folder) == ()
     with socket.socket(socket.AF_UNIX) as left, short_address(socket_path(folder, 77)) as address:
         left.bind(address)
@@ -306,5 +306,5 @@ def test_a_service_is_known_to_run_by_those_who_may_not_look_into_its_folder() -
 
 
 def test_what_is_said_of_it() -> None:
-    refused = why_none(Found(foreign=(Path("/run/mocapd"),)))
+    refused = no_daemon_error(FoundDaemons(foreign=(Path("/run/mocapd"),)))
     assert str(refused) == "/run/mocapd: a daemon of another user is running -- ask with sudo"

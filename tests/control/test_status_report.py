@@ -22,7 +22,7 @@ from mocapd.outputs import output_table
 from mocapd.outputs.output_table import OutputEntry
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
-from mocapd.service.fitness import fitness_of
+from mocapd.service.readiness import readiness_of
 from mocapd.service.service import Service, Snapshot
 from mocapd.types import Rig, Tracking
 from tests.geometry.rigs import ring
@@ -90,7 +90,7 @@ def test_one_word_says_whether_it_can_track(
     none = Percentiles(0.0, 0.0)
     metrics = Metrics(0.0, published, 0, 0, none, none, none, tracking, "", {})
     by_name = {str(number): one for number, one in enumerate(cameras)}
-    assert fitness_of(Snapshot(metrics, by_name, {})) == state
+    assert readiness_of(Snapshot(metrics, by_name, {})) == state
 
 
 def test_the_newest_warning_is_remembered_and_nothing_less() -> None:

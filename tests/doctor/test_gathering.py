@@ -15,7 +15,7 @@ from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.calibration.calibration_writing import write_calibration
 from mocapd.config.sections import CameraSection, Config, WebSection
 from mocapd.doctor.checks.storage_checks import check_ports
-from mocapd.doctor.checks.system_checks import check_whose
+from mocapd.doctor.checks.system_checks import check_ownership
 from mocapd.doctor.facts import PreparationFacts, UserFacts
 from mocapd.doctor.finding import Verdict
 from mocapd.doctor.gathering.calibration_facts import calibration_facts
@@ -142,12 +142,12 @@ def test_root_is_told_of_the_services_whose_state_it_does_not_look_at(tmp_path: 
     (tmp_path / "mocapd").symlink_to("private/mocapd")
     states = state_facts(config, root, tmp_path)
     assert states.of_services == (tmp_path / "mocapd", tmp_path / "mocapd-rigs/hall")
-    (found,) = check_whose(root, states)
+    (found,) = check_ownership(root, states)
     assert found.verdict is Verdict.WARN
     assert str(tmp_path / "root") in found.what
     assert str(tmp_path / "mocapd-rigs/hall") in found.what
     assert found.fix.startswith("sudo mocapd as-service doctor")
-    assert not [*check_whose(somebody, state_facts(config, somebody, tmp_path))]
+    assert not [*check_ownership(somebody, state_facts(config, somebody, tmp_path))]
     as_service = Config(state_dir=tmp_path / "private/mocapd")
     assert state_facts(as_service, root, tmp_path).of_services == (tmp_path / "mocapd-rigs/hall",)
 

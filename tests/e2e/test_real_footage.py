@@ -15,7 +15,7 @@ from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.geometry.rig_file import load_rig
 from mocapd.session.camera_inputs import picture_size
 from mocapd.session.offline import track_all
-from mocapd.session.tracker_setup import cached, ready_tracker
+from mocapd.session.tracker_setup import cache_resources, ready_tracker
 from mocapd.types import Frame, FrameSet, Rig
 from tests.cli.mocapd_process import mocapd, start
 from tests.conftest import ABSENT, SHARED
@@ -64,7 +64,7 @@ def frames_of(name: str, video: Path) -> Iterator[Frame]:
 
 def found_in(rig: Rig, sets: Iterator[FrameSet], cache_dir: Path) -> list[float]:
     """The times at which the tracker `shirt` sees somebody [s]; the pictures alone tell it who."""
-    resources = cached(cache_dir, lambda *_: None)
+    resources = cache_resources(cache_dir, lambda *_: None)
     ready = ready_tracker("shirt", Calibration(rig, Wearer(1.75)), resources)
     track = track_all(ready.tracker, ready.shape, sets, _nobody)
     return [float(t) for t in track.times_s]

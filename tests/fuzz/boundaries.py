@@ -9,14 +9,14 @@ from random import Random
 import cv2
 
 from mocapd.boundary.files import is_file, is_folder, read_file, read_text, user_path
-from mocapd.boundary.numbers import brief, finite_number, whole_number, whole_number_of_text
-from mocapd.boundary.parsing import convert, decode_json, decode_msgpack, parse_json, parse_toml
-from mocapd.boundary.pictures import (
+from mocapd.boundary.image_decoding import (
     decode_camera_picture,
     decode_picture,
     is_plain_jpeg,
     read_header,
 )
+from mocapd.boundary.numbers import brief, finite_number, whole_number, whole_number_of_text
+from mocapd.boundary.parsing import convert, decode_json, decode_msgpack, parse_json, parse_toml
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.errors import MocapdError
 from mocapd.web.links.wizard_link import PageCommand

@@ -6,7 +6,7 @@ from random import Random
 from mocapd.assets import asset_path
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
 from mocapd.capture.kinds.source_kinds import (
-    address_beside,
+    address_in_folder,
     cameras_of_origin,
     identity_of,
     is_simulated,
@@ -14,8 +14,8 @@ from mocapd.capture.kinds.source_kinds import (
     origin_of,
 )
 from mocapd.capture.source_request import SourceRequest
-from mocapd.config.config_keys import shown
-from mocapd.config.effective import Effective, known_keys, load_config
+from mocapd.config.config_keys import as_toml
+from mocapd.config.effective import Effective, all_keys, load_config
 from mocapd.config.sources import env_name
 from mocapd.outputs.osc.osc_sink import parse_destination
 from mocapd.outputs.zenoh.zenoh_config import Params, is_loopback, listen_endpoints, session_config
@@ -141,7 +141,7 @@ def files(place: Place) -> Attempt:
 
 def flags(place: Place) -> Attempt:
     """Every nasty text in every flag and variable."""
-    keys = tuple(known_keys())
+    keys = tuple(all_keys())
     cases = [(key, text, flag) for key in keys for text in _TEXTS for flag in (True, False)]
 
     def take(case: tuple[str, str, bool]) -> bool:
@@ -156,7 +156,7 @@ def flags(place: Place) -> Attempt:
 
 def _show(effective: Effective) -> None:
     for setting in effective.settings:
-        shown(setting.value)
+        as_toml(setting.value)
 
 
 def scenarios(place: Place) -> Attempt:
@@ -191,7 +191,7 @@ def cameras(place: Place) -> Attempt:
         identity_of(text)
         if is_simulated(text):
             cameras_of_origin(origin_of(text))
-        address_beside(place.folder, text)
+        address_in_folder(place.folder, text)
         open_source(text, SourceRequest(size_px=(64, 48)))
 
     for good in (str(film), f"{capture}#cam1", "rtsp://10.0.0.2/stream", "0", texts[0]):

@@ -13,7 +13,7 @@ from mocapd.capture.remote.camera_wire import (
     CameraState,
     ClockAnswer,
     Done,
-    Kept,
+    LockedControls,
     Order,
     PictureStamp,
 )
@@ -132,7 +132,7 @@ def clocks(place: Place) -> Attempt:
                 data = damaged(random, data)
 
             def take(data: bytes = data, asked: int = asked_ns, came: int = came_ns) -> None:
-                track.answered(asked, camera_wire.decode(data, ClockAnswer), came)
+                track.add_answer(asked, camera_wire.decode(data, ClockAnswer), came)
 
             told += named(take)
             if track.line is not None:
@@ -166,7 +166,7 @@ def orders(place: Place) -> Attempt:
         Order("write", Control.GAIN, 99),
         Order("read", Control.EXPOSURE),
         Order("range", Control.FOCUS),
-        Order("keep", kept=Kept(exposure=20, gain=8, power_line_hz=50)),
+        Order("keep", kept=LockedControls(exposure=20, gain=8, power_line_hz=50)),
     ]
     if ControlOrders(FakeWebcam("a")).done(camera_wire.encode(goods[0])).value != 99:
         raise WrongError("a good order is not followed")

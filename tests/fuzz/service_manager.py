@@ -48,9 +48,9 @@ def variables(place: Place) -> Attempt:
         finally:
             if env:
                 raise WrongError(f"{sorted(env)} are left for children")
-        notifier.as_usual()
-        notifier.alive()
-        notifier.patience(random.choice((0.0, 1.0, 1e6)))
+        notifier.restore_watchdog()
+        notifier.heartbeat()
+        notifier.extend_watchdog(random.choice((0.0, 1.0, 1e6)))
         notifier.close()
         manager.heard()
         return True

@@ -9,7 +9,7 @@ import numpy as np
 from mocapd.calibrate.bump.landmarks import find_landmarks
 from mocapd.capture.simulated.sockets import Plugged, Sockets, SocketsFile
 from mocapd.service import room_memory
-from mocapd.service.room_memory import FILE_NAME, RoomMemory, kept_rooms
+from mocapd.service.room_memory import FILE_NAME, RoomMemory, read_rooms
 from tests.fuzz.mutations import damaged
 from tests.fuzz.row import Attempt, Place, WrongError
 from tests.geometry.rigs import ring
@@ -36,7 +36,7 @@ def rooms(place: Place) -> Attempt:
             head = 256 if number % 2 else len(body)
             changed = damaged(random, body[:head]) + body[head:]
             path.write_bytes(room_memory.digest_of(changed) + changed)
-        found = kept_rooms(path, cameras)
+        found = read_rooms(path, cameras)
         for views in found.values():
             for view in views:
                 if view.picture.ndim != 2 or not np.isfinite(view.rays).all():

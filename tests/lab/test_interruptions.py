@@ -11,7 +11,7 @@ from lab.simulated.recorded_set import interrupted
 from lab.studies.cue_changes import Interruptions, PublishedBodies, cue_changes, interruptions
 from mocapd.calibration.from_origin import from_capture
 from mocapd.evaluate.capture_eval import open_case
-from mocapd.session.tracker_setup import cached, ready_tracker
+from mocapd.session.tracker_setup import cache_resources, ready_tracker
 from mocapd.types import Floats
 from tests.sim.kept_capture import kept_capture
 from tests.sim.small import scenario
@@ -94,7 +94,9 @@ def test_a_recording_is_looked_at_from_its_first_frame_and_written_as_a_page(
     """The canned body is there all the time, also before the person comes."""
     case = open_case(kept_capture(scenario(person_appears_s=0.2), 1.5, cache_home))
     ready = ready_tracker(
-        "canned", from_capture(case.folder).assuming(1.7), cached(cache_home, lambda *_: None)
+        "canned",
+        from_capture(case.folder).assuming(1.7),
+        cache_resources(cache_home, lambda *_: None),
     )
     one = interruptions(case, ready, lambda *_: None)
     assert len(one.bodies.times_s) == 45

@@ -13,7 +13,7 @@ from mocapd.capture.remote.remote_address import parse_remote
 from mocapd.capture.remote.remote_link import RemoteLink
 from mocapd.clock import monotonic_ns
 from mocapd.evaluate.bench.bench_live import LiveFigures, bench_live
-from mocapd.node.imperfections import Imperfections, parse_imperfections
+from mocapd.node.network_emulation import Imperfections, parse_imperfections
 from tests.load.children import Child
 from tests.load.pictures import CAMERA, write_recording
 from tests.outputs.frames import free_port

@@ -5,7 +5,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.clock import NS_PER_S
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
@@ -35,7 +35,7 @@ def write_recording(
 ) -> Path:
     """So long [s] of one camera at this rate."""
     files = jpegs(size_px)
-    known = RecordedKnown(nominal_rig(CAMERA, size_px), 1.75, (), {})
+    known = RecordingMetadata(nominal_rig(CAMERA, size_px), 1.75, (), {})
     with RecordingWriter(path, RecordingParams(), _START_NS) as writer:
         writer.attach(known, _START_NS)
         for n in range(round(duration_s * rate_hz)):

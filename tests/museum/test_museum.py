@@ -20,7 +20,7 @@ from mocapd.errors import ConfigError, InputError, MocapdError, NewerFileError
 from mocapd.geometry.rig_file import load_rig
 from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.wire import SkeletonFrame
-from mocapd.service.room_memory import DIGEST_BYTES, RoomMemory, digest_of, kept_rooms
+from mocapd.service.room_memory import DIGEST_BYTES, RoomMemory, digest_of, read_rooms
 from mocapd.service.room_memory import FILE_NAME as ROOMS
 from mocapd.types import Camera
 from mocapd.web.stored_key import stored_key
@@ -247,7 +247,7 @@ def changed(path: Path, change: Change) -> bytes:
         (f"state/{SECRETS}", lambda path: stored_sources(path.parent)),
         (f"state/{LENSES}", lambda path: read_intrinsics(path.parent)),
         (f"state/{DRAFT}", read_draft),
-        (f"state/{ROOMS}", lambda path: kept_rooms(path, {})),
+        (f"state/{ROOMS}", lambda path: read_rooms(path, {})),
         ("rig.json", load_rig),
         ("state/frames.key", stored_key),
     ],

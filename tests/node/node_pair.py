@@ -17,8 +17,8 @@ from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import monotonic_ns
 from mocapd.config.node_params import Params
 from mocapd.errors import CameraLost, UnavailableError
-from mocapd.node.camera_node import CameraNode
-from mocapd.node.imperfections import Imperfections
+from mocapd.node.network_emulation import Imperfections
+from mocapd.node.node_service import CameraNode
 from mocapd.outputs.zenoh import zenoh_config
 from mocapd.session.camera_inputs import CameraInput
 from mocapd.types import Frame

@@ -137,7 +137,7 @@ def test_nobody_answers_where_a_node_answers(users: str) -> None:
 @pytest.mark.parametrize(
     ("params", "zenoh_params", "message"),
     [
-        (PAIRED, {}, "nobody can show to be 'pc'"),
+        (PAIRED, {}, "no client can authenticate as 'pc'"),
         (PAIRED, {"connect": ("tcp/127.0.0.1:9",)}, "behind a router"),
         (Params(router_decides=True), {}, "no router to decide"),
     ],

@@ -17,7 +17,7 @@ from mocapd.capture.remote.remote_source import RemoteSource
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.clock import monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, UnavailableError
-from mocapd.node.imperfections import Imperfections
+from mocapd.node.network_emulation import Imperfections
 from mocapd.pipeline.latest import Latest
 from mocapd.types import Frame
 from tests.attacks.node_kinds import KINDS

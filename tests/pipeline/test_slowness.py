@@ -19,8 +19,8 @@ from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.other_programs import OtherPrograms
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.pipeline.slowness import Slowness, SlownessWatch
-from mocapd.service.fitness import fitness_of
 from mocapd.service.health import health_message
+from mocapd.service.readiness import readiness_of
 from mocapd.service.service import Snapshot
 from mocapd.types import Tracking
 from mocapd.web.live_json import figures_json
@@ -90,7 +90,7 @@ def test_this_machine_can_be_read() -> None:
 
 
 def test_status_says_it_with_a_code_of_its_own() -> None:
-    assert fitness_of(Snapshot(METRICS, {"left": LIVE}, {})) == "slow"
+    assert readiness_of(Snapshot(METRICS, {"left": LIVE}, {})) == "slow"
     text = f"{SLOW_NOW.what} -- {SLOW_NOW.fix}"
     slow = report(state="slow", slowness=text)
     assert exit_code(slow) == SLOW == 151

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.image_decoding import decode_picture
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.capture.simulated.socket_camera import SocketCamera
@@ -117,8 +117,8 @@ def test_what_is_known_of_neither_is_asked_about(daemon: Daemon) -> None:
     anywhere = np.asarray(cv2.GaussianBlur(anywhere, (0, 0), 2.0), np.uint8)
     assert not daemon.send("left", pixels=anywhere)
     assert not daemon.send("left", pixels=anywhere)
-    assert "cannot be told from right" in daemon.watch.notice("left")
-    assert "start mocapd anew" in daemon.watch.notice("left")
+    assert "cannot be distinguished from right" in daemon.watch.notice("left")
+    assert "restart mocapd" in daemon.watch.notice("left")
 
 
 def test_one_that_is_unplugged_alone_is_not_doubted(daemon: Daemon) -> None:
@@ -245,6 +245,6 @@ def test_where_nothing_can_be_kept_it_is_told_once(
     for _ in range(2):
         for name in ALIKE:
             assert daemon.send(name)
-    assert wait_until(lambda: "cannot be kept for the next start" in caplog.text)
+    assert wait_until(lambda: "cannot be saved for the next start" in caplog.text)
     memory.write({}, {})
-    assert caplog.text.count("cannot be kept for the next start") == 1
+    assert caplog.text.count("cannot be saved for the next start") == 1

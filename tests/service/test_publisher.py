@@ -109,7 +109,9 @@ def test_a_recentre_tells_which_way_the_newest_person_faces() -> None:
         frames = FrameSet(body.t_ns, {})
         run.publisher.put(BodySample(Track(body, mean_shape(1.75)), SKELETON, frames))
 
-    with pytest.raises(UnavailableError, match=r"nobody is seen.*stand where the cameras see you"):
+    with pytest.raises(
+        UnavailableError, match=r"no person in view.*stand where the cameras see you"
+    ):
         run.publisher.recenter()
     put(seen)
     facing = run.publisher.recenter()

@@ -103,7 +103,7 @@ def test_state_is_told_anew_also_of_cameras_that_are_no_more(
 ) -> None:
     sink.states.clear()
     service.replace(config_of(), session_of("b", "c", stature_m=1.9))
-    service.tell(service.snapshot())
+    service.publish_status(service.snapshot())
     (rest,) = (one for one in sink.states if isinstance(one, RestSkeleton))
     assert rest.stature_m == 1.9
     (calibration,) = (one for one in sink.states if isinstance(one, CalibrationInfo))

@@ -11,7 +11,7 @@ from mocapd.capture.capture_folder import load_folder
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.session.session import cameras_of, open_session
-from mocapd.session.tracker_setup import cached
+from mocapd.session.tracker_setup import cache_resources
 from mocapd.shirt.colour.model_pictures import read_model, stroked_folder
 from tests.cli.small_capture import SIZE_PX, camera_entry, write_capture, write_rig, write_stroked
 
@@ -85,7 +85,7 @@ def test_the_best_that_can_run_is_the_usual_one() -> None:
 
 
 def test_what_the_config_says_of_losing_track_reaches_the_tracker(tmp_path: Path) -> None:
-    resources = cached(tmp_path, quiet, TrackerSection(coast_s=0.9).tracking)
+    resources = cache_resources(tmp_path, quiet, TrackerSection(coast_s=0.9).tracking)
     assert resources.tracking is not None
     assert resources.tracking.coast_s == 0.9
 

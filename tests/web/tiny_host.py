@@ -9,7 +9,7 @@ from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
-from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, MocapdError, Problem, UnavailableError
 from mocapd.outputs.base import SinkStatus
@@ -20,7 +20,7 @@ from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.pipeline.slowness import Slowness
 from mocapd.service.body_recorder import BodyRecorder
-from mocapd.service.recordings import Recordings
+from mocapd.service.recordings_folder import Recordings
 from mocapd.service.service import Snapshot
 from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
@@ -123,8 +123,8 @@ class TinyHost:
         self.hub.put(frame)
         return frame
 
-    def known(self) -> RecordedKnown:
-        return RecordedKnown(self.rig, 1.75)
+    def known(self) -> RecordingMetadata:
+        return RecordingMetadata(self.rig, 1.75)
 
     def setup(self) -> Wizard:
         if self.why_not:
@@ -176,7 +176,9 @@ class TinyHost:
     def recenter(self) -> None:
         if not self.tracks:
             raise UnavailableError(
-                "nobody is seen whose forward could be told", "the daemon", "stand in view"
+                "no person in view whose heading could become forward",
+                "the daemon",
+                "stand in view",
             )
         self.recentered += 1
 

@@ -1,1 +1,1 @@
-"""The daemon's run: its loop, signals, first session, page, and what the service manager is told."""
+"""The daemon's process: main loop, signals, first session, page, and notification of the service manager."""

@@ -1,4 +1,4 @@
-"""The first start in processes of their own: compiling and building takes memory that only its end gives back."""
+"""Warms up the caches of a first start in child processes, as only their end frees the memory of compiling."""
 
 import logging
 import multiprocessing
@@ -21,86 +21,86 @@ if TYPE_CHECKING:
     from mocapd.app.daemon.task_pool import Progress
     from mocapd.config.sections import Config
 
-_DATABASE = " database"  # alone, without the tracker's code compiled
-FIRST_AFTER_S = 1.0  # what takes less, such as being refused, is not worth a line [s]
+_DATABASE = " database"  # only the database, no compiled kernels
+FIRST_AFTER_S = 1.0  # shorter work is not logged [s]
 _BEGUN = "compiling, once on this machine"  # until the preparation says more
-_READY = "\0"  # what is said when a stream can begin
-_LOOK_S = 0.2  # how often whoever waits can be interrupted [s]
+_READY = "\0"  # message: a stream can begin
+_LOOK_S = 0.2  # poll interval of a waiting caller, which signals may interrupt [s]
 _MOST_PROCESSES = 4  # each takes up to 300 MB
-_OPENING_S = 4.0  # to build the tracker from what was prepared, on the figures' machine
+_OPENING_S = 4.0  # to build the tracker from caches, on the reference machine
 
 _log = logging.getLogger(__name__)
-Tell = Callable[[str], None]
+Report = Callable[[str], None]
 
 
 def _quiet(*_: object) -> None:
-    """Nobody listens."""
+    """Ignores progress."""
 
 
 class Preparation:
-    """What is prepared beside the process that began it. `is_needed`: whether there is anything to do."""
+    """Preparation in a child process. `is_needed`: False if everything is cached."""
 
-    def __init__(self, child: BaseProcess | None, said: Connection | None = None) -> None:
-        self._child, self._said = child, said
+    def __init__(self, child: BaseProcess | None, messages: Connection | None = None) -> None:
+        self._child, self._messages = child, messages
         self.is_needed, self._is_ready = child is not None, False
         self._words = _BEGUN
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing is prepared any more, well or not."""
+        """True after its end, successful or not."""
         return self._child is None or not self._child.is_alive()
 
     def newest(self) -> str:
-        """Where it stands, in words for people; empty when it is over."""
-        self._words = "" if self.is_over else self._hear(self._words, 0.0)
+        """The progress, for users; empty when it is over."""
+        self._words = "" if self.is_over else self._receive(self._words, 0.0)
         return self._words
 
-    def wait(self, tell: Tell = _quiet) -> None:
-        """Until a stream can begin, or it is over, well or not; `tell` hears where it stands, in words for people."""
-        began_s, told = time.monotonic(), False
-        has_bars = sys.stderr.isatty()  # the preparation's own, which say it better
+    def wait(self, report: Report = _quiet) -> None:
+        """Waits until a stream can begin or the child ends; reports the progress, for users."""
+        began_s, has_logged = time.monotonic(), False
+        has_bars = sys.stderr.isatty()  # the child's progress bars replace log lines
         while not self.is_over and not self._is_ready:
-            self._words = self._hear(self._words, _LOOK_S)
+            self._words = self._receive(self._words, _LOOK_S)
             if time.monotonic() - began_s > FIRST_AFTER_S:
-                tell(self._words)
-                if not has_bars and not told and self._words != _BEGUN:
-                    told = True
+                report(self._words)
+                if not has_bars and not has_logged and self._words != _BEGUN:
+                    has_logged = True
                     _log.info("%s", self._words)
-        if told:
+        if has_logged:
             _log.info("prepared after %.0f s", time.monotonic() - began_s)
 
-    def _hear(self, words: str, within_s: float) -> str:
-        """What was said last."""
+    def _receive(self, words: str, within_s: float) -> str:
+        """The newest message, else `words`."""
         assert self._child is not None
-        if self._said is None:
+        if self._messages is None:
             self._child.join(within_s)
             return words
-        with suppress(EOFError):  # it is about to end
-            while self._said.poll(within_s):
-                said, within_s = self._said.recv(), 0.0
-                if said == _READY:
+        with suppress(EOFError):  # the child is ending
+            while self._messages.poll(within_s):
+                message, within_s = self._messages.recv(), 0.0
+                if message == _READY:
                     self._is_ready = True
                 else:
-                    words = said
+                    words = message
             return words
         self._child.join(within_s)
         return words
 
 
 @contextmanager
-def preparing_apart(config: "Config") -> Iterator[Preparation]:
-    """`prepare_apart` in a process beside this one, which may go on and have threads; it ends with the block.
+def prepare_in_background(config: "Config") -> Iterator[Preparation]:
+    """Runs `prepare_in_processes` in a child process, which ends with the block; this process may start threads.
 
-    Called while the process has one thread.
+    Call it while the process has one thread.
     """
     if is_prepared(config):
         yield Preparation(None)
         return
-    import mocapd.session.session  # noqa: F401  all that the processes need, imported once for them
+    import mocapd.session.session  # noqa: F401  imported once for all children
 
     fork = multiprocessing.get_context("fork")
     here, there = fork.Pipe(duplex=False)
-    child = fork.Process(target=_work, args=(prepare_apart, config, there.send))
+    child = fork.Process(target=_work, args=(prepare_in_processes, config, there.send))
     child.start()
     there.close()
     try:
@@ -111,13 +111,11 @@ def preparing_apart(config: "Config") -> Iterator[Preparation]:
         here.close()
 
 
-def prepare_apart(config: "Config", tell: Tell = _quiet) -> None:
-    """Make the caches that this code and tracker need, in processes of their own, unless that was done before;
-    `tell` hears where it stands.
+def prepare_in_processes(config: "Config", report: Report = _quiet) -> None:
+    """Makes the missing caches of this code and tracker in child processes; reports the progress.
 
-    A failure is not told here: the caller comes upon it again, and tells it. What ends the
-    caller ends the work too; what is half made is made anew next time. Called while the process has
-    one thread.
+    Failures are silent here, as the caller's own attempt reports them. The children end with the caller; an interrupted
+    cache is rebuilt next time. Call it while the process has one thread.
     """
     if is_prepared(config):
         return
@@ -126,12 +124,12 @@ def prepare_apart(config: "Config", tell: Tell = _quiet) -> None:
 
     prepare = _run_tasks if has_tasks(config.tracker.name) else _open_once
     with one_at_a_time(config.cache_dir, LOCK):
-        if not is_prepared(config) and prepare(config, tell):  # by whom we waited for
+        if not is_prepared(config) and prepare(config, report):  # else another process did
             remember(config)
 
 
-def _run_tasks(config: "Config", tell: Tell) -> bool:
-    """Whether all came to a good end."""
+def _run_tasks(config: "Config", report: Report) -> bool:
+    """True if all tasks succeeded."""
     from mocapd.app.daemon.first_start_tasks import first_start_tasks, machine_pace
     from mocapd.app.daemon.task_pool import run_tasks
     from mocapd.app.terminal.progress import ProgressBars
@@ -144,50 +142,48 @@ def _run_tasks(config: "Config", tell: Tell) -> bool:
     with ProgressBars() as bars:
         bars.begin(headline)
 
-        def hear(progress: "Progress") -> None:
+        def on_progress(progress: "Progress") -> None:
             for what, share in progress.shares.items():
                 bars(what, round(100 * share), 100)
-            tell(_progress_text(progress))
+            report(_progress_text(progress))
 
-        tell(headline)
-        return run_tasks(tasks, processes, hear, pace, lambda: tell(_READY))
+        report(headline)
+        return run_tasks(tasks, processes, on_progress, pace, lambda: report(_READY))
 
 
 def _about(seconds: float) -> str:
-    """A duration as one says it."""
+    """A rounded duration, for users."""
     if seconds < 90.0:
         return f"about {max(1, round(seconds / 10.0)) * 10} s"
     return f"about {seconds / 60.0:.0f} minutes"
 
 
 def _progress_text(progress: "Progress") -> str:
-    """What is still prepared, in words for people."""
+    """The remaining preparations, for users."""
     open_shares = [
         f"{what} {100 * share:.0f} %" for what, share in progress.shares.items() if share < 1.0
     ]
     return f"once on this machine: {', '.join(open_shares)}; {_about(progress.left_s)} left"
 
 
-def _open_once(config: "Config", tell: Tell) -> bool:
-    """For trackers whose kernels no table knows: build it once, in a process of its own. Whether all ended well."""
+def _open_once(config: "Config", report: Report) -> bool:
+    """Builds a tracker without a kernel table once, in a child process. True on success."""
     from mocapd.capture.kinds.source_kinds import is_simulated
 
-    tell("compiling the tracker, once on this machine")
-    # what takes longest side by side, then what needs both; with real cameras `_open` is alone, as
-    # it tells at once what is wrong with them
+    report("compiling the tracker, once on this machine")
+    # film and database in parallel, then the session, which needs both; with real cameras only the session, which
+    # reports their errors at once
     simulated = any(is_simulated(camera.source) for camera in config.camera)
     first = (_make_film, _make_database) if simulated else ()
-    return _all_end_well(config, first) and _all_end_well(config, (_open,))
+    return _all_succeed(config, first) and _all_succeed(config, (_open,))
 
 
 @contextmanager
-def database_beside(config: "Config") -> Iterator[None]:
-    """Makes the pose database, if there is none, in a process beside this one; it ends with the block.
+def database_in_background(config: "Config") -> Iterator[None]:
+    """Makes a missing pose database in a child process, which ends with the block.
 
-    A setup's first steps take longer than that, its later ones need it: they wait for what is under
-    way. What this code has made or found before is not looked at again while the file is there: should it be
-    damaged, who needs it makes it anew. Called while the process has one thread. A failure is told by whoever
-    needs it.
+    Later steps of a setup need it and wait for it. An existing file is not checked: the code that needs it rebuilds a
+    damaged one and reports failures. Call it while the process has one thread.
     """
     from mocapd.trackers.registry import has_caches
 
@@ -205,8 +201,8 @@ def database_beside(config: "Config") -> Iterator[None]:
         child.join()
 
 
-def _all_end_well(config: "Config", works: Sequence[Callable[["Config"], None]]) -> bool:
-    """Whether all of these, each in a process of its own, came to a good end."""
+def _all_succeed(config: "Config", works: Sequence[Callable[["Config"], None]]) -> bool:
+    """Runs each work in a child process; True if all succeed."""
     fork = multiprocessing.get_context("fork")
     children = [fork.Process(target=_work, args=(work, config)) for work in works]
     try:
@@ -237,7 +233,7 @@ def _work(work: Callable[..., None], *arguments: object) -> None:
 
 
 def _make_film(config: "Config") -> None:
-    """What the simulated webcams show; its bar gives way to the database's, which takes longer."""
+    """Renders the simulated webcams' film, without a bar: the database takes longer."""
     from mocapd.capture.kinds.source_kinds import open_origin, origin_of
 
     for origin in {origin_of(camera.source) for camera in config.camera}:
@@ -249,14 +245,14 @@ def _make_database(config: "Config") -> None:
     from mocapd.session.tracker_setup import make_caches
 
     with ProgressBars() as progress:
-        progress("pose database", 0, 100)  # something to see while its maker is compiled
+        progress("pose database", 0, 100)  # visible while its kernels are compiled
         make_caches(config.tracker.name, config.cache_dir, progress)
 
 
 def _make_database_quietly(config: "Config") -> None:
     from mocapd.session.tracker_setup import make_caches
 
-    os.nice(5)  # the board is looked for meanwhile
+    os.nice(5)  # the board detector runs meanwhile
     make_caches(config.tracker.name, config.cache_dir, _quiet)
     remember(config, _DATABASE)
 

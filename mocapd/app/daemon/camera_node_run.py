@@ -1,4 +1,4 @@
-"""What `mocapd camera-node` runs: the cameras of the configuration, one line of state, an orderly end."""
+"""Implementation of `mocapd camera-node`: the configured cameras, a status line, an orderly end."""
 
 import logging
 import threading
@@ -12,7 +12,7 @@ from mocapd.errors import ConfigError
 
 if TYPE_CHECKING:
     from mocapd.config.effective import Effective
-    from mocapd.node.camera_node import CameraNode
+    from mocapd.node.node_service import CameraNode
 
 SHOW_EVERY_S = 0.5  # how often the status line changes [s]
 
@@ -20,7 +20,7 @@ _log = logging.getLogger(__name__)
 
 
 def run_camera_node(effective: "Effective", imperfect: str) -> int:
-    """Run until it is told to end; the exit code. Raises MocapdError."""
+    """Runs until a signal; returns the exit code. Raises MocapdError."""
     config = effective.config
     set_up_logs(config.log_level)
     if not config.camera:
@@ -39,8 +39,8 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     from mocapd.app.terminal.status_line import StatusLine
     from mocapd.capture.decoder_warnings import DecoderWarnings
     from mocapd.capture.kinds.source_kinds import common_origin, open_origin
-    from mocapd.node.camera_node import CameraNode, NodeThreadDiedError
-    from mocapd.node.imperfections import parse_imperfections
+    from mocapd.node.network_emulation import parse_imperfections
+    from mocapd.node.node_service import CameraNode, NodeThreadDiedError
     from mocapd.outputs.output_table import zenoh_section
     from mocapd.session.camera_inputs import camera_inputs
 
@@ -51,18 +51,18 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     inputs = camera_inputs(config.camera, None, opened, config.node.size_px)
     faults = parse_imperfections(imperfect) if imperfect else None
     node = CameraNode(config.instance, zenoh_section(config.outputs), config.node, inputs, faults)
-    # a thread nobody watches must not die unseen either
+    # an exception in any thread must end the process
     threading.excepthook = lambda args: node.died(args.exc_value or RuntimeError(args.exc_type))
     signals.ends(node)
     try:
         with node, DecoderWarnings(), StatusLine() as shown:
             print("\n".join(_how_to(node)), flush=True)
-            notifier.ready(_how_cameras_fare(node))
+            notifier.ready(_camera_states(node))
             while not node.wait(SHOW_EVERY_S):
                 shown.say(lambda: state_text(node))
-                notifier.status(_how_cameras_fare(node))
-                if notifier.wants_life:
-                    notifier.alive()
+                notifier.status(_camera_states(node))
+                if notifier.is_heartbeat_due:
+                    notifier.heartbeat()
             notifier.stopping()
     except NodeThreadDiedError as error:
         traceback.print_exception(error.__cause__)
@@ -76,13 +76,13 @@ def _how_to(node: "CameraNode") -> list[str]:
     return ["in the daemon's configuration, one [[camera]] for each of:", *sources]
 
 
-def _how_cameras_fare(node: "CameraNode") -> str:
-    """In a word each; it changes only when something happens."""
-    return ", ".join(f"{one.name} {one.state.state}" for one in node.cameras)
+def _camera_states(node: "CameraNode") -> str:
+    """A word for each camera, without figures."""
+    return ", ".join(f"{camera.name} {camera.state.state}" for camera in node.cameras)
 
 
 def state_text(node: "CameraNode") -> str:
-    """Each camera with its rate or its trouble, and how much was sent, in one line."""
+    """One line: each camera's rate or trouble, and the number of sent pictures."""
     parts = []
     for camera in node.cameras:
         state = camera.state

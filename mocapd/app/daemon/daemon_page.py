@@ -1,4 +1,4 @@
-"""The page of a running service: served once bodies come, over one session after another."""
+"""The page of a running service: served from the first body on, across sessions."""
 
 import logging
 import time
@@ -11,15 +11,15 @@ if TYPE_CHECKING:
     from mocapd.web.server import WebServer
     from mocapd.wizard.hosts.daemon_host import DaemonHost
 
-PATIENCE_S = 5.0  # that the page waits for the first body, so as not to delay it [s]
+FIRST_BODY_TIMEOUT_S = 5.0  # the page waits so long for the first body, which it would delay [s]
 HANG_UP_S = 0.5  # for browsers, at the end [s]
-SHOWN_S = 2.0  # a saved setup is shown as saved before it ends [s]
+SHOWN_S = 2.0  # a finished setup stays visible so long [s]
 
 _log = logging.getLogger(__name__)
 
 
 class DaemonPage:
-    """Used by the main thread, apart from what its host's own words say."""
+    """For the main thread."""
 
     def __init__(self, service: "Service") -> None:
         self._service = service
@@ -32,7 +32,7 @@ class DaemonPage:
         """Called several times a second."""
         if self._host is None:
             waited_s = time.monotonic() - self._began_s
-            if snapshot.metrics.published > 0 or waited_s > PATIENCE_S:
+            if snapshot.metrics.published > 0 or waited_s > FIRST_BODY_TIMEOUT_S:
                 self._begin()
             return
         self._host.beat()
@@ -42,7 +42,7 @@ class DaemonPage:
                 _log.info("a calibration is saved; this daemon goes on with what it was started on")
 
     def take_saved(self) -> bool:
-        """Whether a setup has saved what the service runs on, and has been shown as saved; once."""
+        """True once after a setup has saved the service's calibration and has shown so."""
         if self._saved_s is None or time.monotonic() - self._saved_s < SHOWN_S:
             return False
         if self._host is not None:
@@ -51,17 +51,17 @@ class DaemonPage:
         return self._runs_on_saved()
 
     def rest(self) -> None:
-        """The session is about to be changed: a setup on it ends, and none begins."""
+        """Ends a running setup and refuses new ones, before a change of the session."""
         if self._host is not None:
             self._host.rest()
 
     def resume(self) -> None:
-        """A session runs that stays."""
+        """Permits setups again."""
         if self._host is not None:
             self._host.resume()
 
     def let_go(self) -> None:
-        """The service is about to end; never blocks for long."""
+        """First phase of stopping; never blocks for long."""
         if self._host is not None:
             self._host.close()
         if self._server is not None:
@@ -69,12 +69,12 @@ class DaemonPage:
         self.rest()
 
     def close(self) -> None:
-        """For ever."""
+        """Stops the server."""
         if self._server is not None:
             self._server.stop(HANG_UP_S)
 
     def _begin(self) -> None:
-        # here, as it takes a third of a second that nobody waits for now
+        # imported here: it takes a third of a second, which would delay the first body
         from mocapd.config.runtime_folder import runtime_folder
         from mocapd.web.runtime_file import Place
         from mocapd.web.server import WebServer
@@ -86,14 +86,14 @@ class DaemonPage:
         server = WebServer(self._host, config.web, service.died, place)
         try:
             server.start()
-        except MocapdError as error:  # bodies are what the daemon is for: it goes on without a page
+        except MocapdError as error:  # the daemon runs without a page
             _log.warning("no page: %s", error)
             return
         self._server = server
         _log.info("`mocapd calibrate` opens the page with the live view and the setup")
 
     def _runs_on_saved(self) -> bool:
-        """Whether a session that is made now takes up what was saved."""
+        """True if a new session would use the saved calibration."""
         from mocapd.calibration.calibration_file import calibration_path
         from mocapd.wizard.hosts.daemon_host import state_dir_of
 

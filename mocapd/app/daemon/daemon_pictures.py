@@ -1,4 +1,4 @@
-"""The pictures of a running daemon, from its page, for `mocapd record --pictures`."""
+"""Receives a running daemon's pictures from its page, for `mocapd record --pictures`."""
 
 import queue
 import threading
@@ -12,9 +12,9 @@ from msgspec import Meta
 from websockets.exceptions import WebSocketException
 from websockets.sync.client import ClientConnection, connect
 
+from mocapd.boundary.image_decoding import MOST_FILE_BYTES
 from mocapd.boundary.mcap_records import McapAttachment
 from mocapd.boundary.parsing import decode_json
-from mocapd.boundary.pictures import MOST_FILE_BYTES
 from mocapd.errors import MalformedError, UnavailableError
 from mocapd.outputs.mcap.recording_writer import RecordingWriter
 from mocapd.web.runtime_file import Running, running
@@ -26,7 +26,7 @@ _JOIN_S = 1.0
 
 
 class RecordingHeader(msgspec.Struct, frozen=True):
-    """Of a file, or of a picture: see web.recording_link."""
+    """The header of a file or picture: see web.recording_link."""
 
     file: str = ""
     media_type: str = ""
@@ -37,21 +37,21 @@ class RecordingHeader(msgspec.Struct, frozen=True):
 
 
 class DaemonPictures:
-    """Connected from `__enter__` to `__exit__`. `dropped`: pictures that were too many for somebody; `over`: why none
-    come any more."""
+    """Connected from `__enter__` to `__exit__`. `dropped`: pictures lost to full queues; `over`: reason of the stream's
+    end."""
 
     def __init__(self, folder: Path, instance: str) -> None:
-        """folder: where pages are announced (web.runtime_file); instance: the daemon's name."""
+        """folder: of the page announcements (web.runtime_file); instance: the daemon's name."""
         self._folder, self._instance = folder, instance
         self._waiting: queue.Queue[tuple[RecordingHeader, bytes]] = queue.Queue(MOST_WAITING)
         self._opened = ExitStack()
         self._socket: ClientConnection | None = None
         self._thread = threading.Thread(target=self._run, name="pictures", daemon=True)
-        self._full = self._theirs = 0
+        self._dropped_here = self._dropped_there = 0
         self.over = ""
 
     def __enter__(self) -> Self:
-        """Raises UnavailableError where there is no page of this daemon and user."""
+        """Raises UnavailableError without a page of this daemon and user."""
         page = _page_of(running(self._folder), self._instance, self._folder)
         try:
             self._socket = self._opened.enter_context(
@@ -64,7 +64,7 @@ class DaemonPictures:
             )
         except (OSError, WebSocketException) as error:
             raise UnavailableError(
-                f"its page gives no pictures ({error})", self._instance, "start the daemon anew"
+                f"its page gives no pictures ({error})", self._instance, "restart the daemon"
             ) from None
         self._thread.start()
         return self
@@ -76,11 +76,11 @@ class DaemonPictures:
 
     @property
     def dropped(self) -> int:
-        """By both sides."""
-        return self._full + self._theirs
+        """Pictures dropped by client and daemon."""
+        return self._dropped_here + self._dropped_there
 
     def drain(self, writer: RecordingWriter, unix_ns: int) -> None:
-        """Write what has come; never waits. unix_ns: now, for files."""
+        """Writes the received items; never waits. unix_ns: now, for files."""
         while True:
             try:
                 header, data = self._waiting.get_nowait()
@@ -104,11 +104,11 @@ class DaemonPictures:
         """Raises MalformedError."""
         end = 4 + int.from_bytes(data[:4], "little")
         header = decode_json(data[4:end], RecordingHeader)
-        self._theirs = max(self._theirs, header.dropped)
+        self._dropped_there = max(self._dropped_there, header.dropped)
         try:
             self._waiting.put_nowait((header, data[end:]))
         except queue.Full:
-            self._full += 1
+            self._dropped_here += 1
 
 
 def _page_of(pages: Iterable[Running], instance: str, folder: Path) -> Running:

@@ -1,7 +1,7 @@
-"""Signals while the command is still being imported: the process ends at once, with the code it always has.
+"""Handles signals during the imports of a command: the process ends at once, with the usual exit code.
 
-Imports nothing but what the interpreter has loaded already. An exception would not do: raised in the
-midst of an import it may be swallowed there, or leave a traceback.
+Imports only modules that the interpreter has already loaded. An exception would not do: an import may swallow it or
+print a traceback.
 """
 
 import os
@@ -12,48 +12,47 @@ from types import FrameType
 
 SIGINT_EXIT = 130
 SERVICES = ("run", "demo", "calibrate", "camera-node")
-"""Commands that end with 0 when they are told to end. The others had something to finish, and did not:
-they die of the signal."""
+"""Commands that end with 0 after a signal. Other commands are unfinished then and die of the signal."""
 RELOADING = ("run", "demo")
-"""Of these the commands that a SIGHUP without a terminal tells to read their configuration again."""
+"""The commands that reload their configuration at a SIGHUP without a terminal."""
 
 
-class ComesEarly:
-    """Takes a signal for whoever will have a use for it."""
+class EarlySignal:
+    """A signal handler that records the signal for a later handler."""
 
     def __init__(self) -> None:
-        self.came = False
+        self.has_come = False
 
     def __call__(self, _number: int, _frame: FrameType | None) -> None:
-        self.came = True
+        self.has_come = True
 
 
 def on_terminal() -> bool:
-    """Whether there is a terminal that may be closed."""
+    """True if the process has a terminal, which may be closed."""
     return any(os.isatty(fd) for fd in (0, 1, 2))
 
 
 def end_at_once(words: Sequence[str]) -> None:
-    """Until `Signals` takes over, or `interruptible` is called. words: of the command line."""
+    """Installs the handlers, until `Signals` or `interruptible` replaces them. words: the command line."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _end)
     if is_service(words):
         for number in (signal.SIGTERM, signal.SIGHUP):
             if signal.getsignal(number) is signal.SIG_DFL:  # under nohup it is ignored
                 reloads = number == signal.SIGHUP and words[1] in RELOADING and not on_terminal()
-                signal.signal(number, ComesEarly() if reloads else _end)
+                signal.signal(number, EarlySignal() if reloads else _end)
 
 
 def interruptible(words: Sequence[str]) -> None:
-    """The command begins: unless it is a service, Ctrl-C is an exception again, which it may catch."""
+    """Makes Ctrl-C an exception again at the start of a command that is no service."""
     if not is_service(words) and signal.getsignal(signal.SIGINT) is _end:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def ended() -> None:
-    """The command is over, and its exit code is known: a signal that was looked after until now changes it no more.
+def ignore_signals() -> None:
+    """Ignores signals after the end of the command, so that they do not change the exit code.
 
-    The interpreter gives such signals their default effect while it ends, by which the process would die of them.
+    The interpreter restores their default effect while it exits, which would kill the process.
     """
     for number in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
         if callable(signal.getsignal(number)):
@@ -61,7 +60,7 @@ def ended() -> None:
 
 
 def is_service(words: Sequence[str]) -> bool:
-    """Whether this command line starts something that runs until it is told to end."""
+    """True if this command line starts a service, which runs until a signal."""
     batch = any(word.startswith("--from-folder") for word in words)
     return len(words) > 1 and words[1] in SERVICES and not batch
 

@@ -1,4 +1,4 @@
-"""A stream that began with what was ready first: the session that was asked for follows when all is prepared."""
+"""Early start: the stream begins with a reduced session; the configured one follows when everything is prepared."""
 
 from collections.abc import Callable
 
@@ -8,19 +8,19 @@ from mocapd.service.service import Snapshot
 
 
 class EarlyStart:
-    """See LoopHook. `tell` hears what is still prepared, in words for people; in the end an empty text."""
+    """See LoopHook. Reports the remaining preparations, for users; an empty text at the end."""
 
     def __init__(
-        self, preparation: Preparation, change: SessionChange, tell: Callable[[str], None]
+        self, preparation: Preparation, change: SessionChange, report: Callable[[str], None]
     ) -> None:
-        self._preparation, self._change, self._tell = preparation, change, tell
+        self._preparation, self._change, self._report = preparation, change, report
         self._waits = not preparation.is_over
 
     def on_tick(self, _snapshot: Snapshot) -> None:
         """See LoopHook."""
         if not self._waits:
             return
-        self._tell(self._preparation.newest())
+        self._report(self._preparation.newest())
         if self._preparation.is_over:
             self._waits = False
             self._change.ask(PREPARED)

@@ -1,4 +1,4 @@
-"""The end of a process within a time, whatever still works or hangs when it is asked to end."""
+"""Ends a process within a deadline, even if threads still work or hang."""
 
 import logging
 import os
@@ -13,10 +13,9 @@ _log = logging.getLogger(__name__)
 
 
 class EndDeadline:
-    """Once asked to end, the process exits in order by itself, or is ended `within_s` later [s].
+    """After `begin` the process exits in order, or is ended after `within_s` [s].
 
-    What is left behind then holds nothing that must be written: files are written whole or not at all, and the system closes
-    connections.
+    A forced end loses nothing: files are written atomically, and the system closes connections.
     """
 
     def __init__(self, within_s: float, exit_code: Callable[[], int]) -> None:
@@ -24,11 +23,11 @@ class EndDeadline:
         self._asked = Latch()
 
     def start(self) -> None:
-        """Begin to watch, in a thread: one cannot be started in a signal handler, which may have interrupted such a start."""
+        """Starts the watching thread. Not in the signal handler, which may interrupt the start of another thread."""
         threading.Thread(target=self._watch, name="end-deadline", daemon=True).start()
 
     def begin(self) -> None:
-        """The time runs from now on; from any thread or a signal handler."""
+        """Starts the deadline; thread-safe and signal-safe."""
         self._asked.set()
 
     def _watch(self) -> None:

@@ -1,4 +1,4 @@
-"""What a first start makes, as tasks: compiled kernels, the film of simulated webcams, the pose database."""
+"""The tasks of a first start: compiled kernels, the film of simulated webcams, the pose database."""
 
 import time
 from functools import partial
@@ -28,12 +28,12 @@ _DATABASE_S, _FILM_S, _BEGINNING_S = (
 
 
 def loop_s() -> float:
-    """Seconds of CPU that a fixed loop takes: what machines are compared by."""
+    """CPU time of a fixed loop [s], which compares machines."""
     return min(_timed_loop_s() for _ in range(5))
 
 
 def machine_pace() -> float:
-    """How much longer this machine takes than the one that the table was made on."""
+    """Time of this machine relative to the table's machine."""
     return loop_s() / TABLE_LOOP_S
 
 
@@ -44,13 +44,13 @@ def _timed_loop_s() -> float:
 
 
 def has_tasks(tracker: str) -> bool:
-    """Whether the table knows what this tracker compiles."""
+    """True if the table has this tracker's kernels."""
     return tracker in _STAGES
 
 
 def begins_early(config: "Config") -> bool:
-    """Whether the stream begins with what is ready first: the person of simulated webcams, by the shirt alone, in the
-    first seconds of the film. Real cameras were set up with a tracker that is compiled by then."""
+    """True for an early start: simulated webcams, with the shirt only, in the first seconds of the film. With real
+    cameras the setup has already compiled the tracker."""
     from mocapd.capture.kinds.source_kinds import is_simulated
 
     simulated = any(is_simulated(camera.source) for camera in config.camera)
@@ -58,7 +58,7 @@ def begins_early(config: "Config") -> bool:
 
 
 def first_start_tasks(config: "Config") -> list[Task]:
-    """All that this configuration needs and that may be missing. Imports the kernels."""
+    """The tasks for this configuration's missing caches. Imports the kernels."""
     from mocapd.capture.kinds.source_kinds import is_simulated
     from mocapd.trackers.registry import TRACKERS, has_caches
 
@@ -74,23 +74,25 @@ def first_start_tasks(config: "Config") -> list[Task]:
     ]
     if has_database:
         making = partial(_make_database, config)
-        tasks.append(Task(DATABASE, _DATABASE_S, making, _needed(rows, "database"), tells=True))
+        tasks.append(
+            Task(DATABASE, _DATABASE_S, making, _rows_of_stage(rows, "database"), reports=True)
+        )
     if has_film:
-        needed = _needed(rows, "film")
+        needed = _rows_of_stage(rows, "film")
         if begins_early(config):
             beginning = partial(_make_film, config, is_beginning=True)
-            tasks.append(Task(FILM, _BEGINNING_S, beginning, needed, tells=True))
+            tasks.append(Task(FILM, _BEGINNING_S, beginning, needed, reports=True))
             needed |= {len(tasks) - 1}
         whole = partial(_make_film, config)
-        tasks.append(Task(FILM, _FILM_S, whole, needed, begins_early(config), tells=True))
+        tasks.append(Task(FILM, _FILM_S, whole, needed, begins_early(config), reports=True))
     return tasks
 
 
-def _needed(rows: tuple[KernelRow, ...], stage: str) -> frozenset[int]:
+def _rows_of_stage(rows: tuple[KernelRow, ...], stage: str) -> frozenset[int]:
     return frozenset(i for i, row in enumerate(rows) if stage in row.stages)
 
 
-def _compile(row: KernelRow, _tell: Share) -> None:
+def _compile(row: KernelRow, _report: Share) -> None:
     row.dispatcher.compile(row.arguments)
     function = row.dispatcher.py_func
     locator = KernelLocator.from_function(function, function.__code__.co_filename)
@@ -98,14 +100,14 @@ def _compile(row: KernelRow, _tell: Share) -> None:
         locator.remove_old(time.time())
 
 
-def _make_database(config: "Config", tell: Share) -> None:
+def _make_database(config: "Config", report: Share) -> None:
     from mocapd.session.tracker_setup import make_caches
 
-    make_caches(config.tracker.name, config.cache_dir, lambda _, done, of: tell(done / of))
+    make_caches(config.tracker.name, config.cache_dir, lambda _, done, of: report(done / of))
 
 
-def _make_film(config: "Config", tell: Share, is_beginning: bool = False) -> None:
+def _make_film(config: "Config", report: Share, is_beginning: bool = False) -> None:
     from mocapd.capture.kinds.source_kinds import open_origin, origin_of
 
     for origin in {origin_of(camera.source) for camera in config.camera}:
-        open_origin(origin, config.cache_dir, lambda _, done, of: tell(done / of), is_beginning)
+        open_origin(origin, config.cache_dir, lambda _, done, of: report(done / of), is_beginning)

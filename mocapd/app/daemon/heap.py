@@ -4,10 +4,10 @@ import ctypes
 
 
 def give_back() -> None:
-    """Return what was freed to the system, which the C library keeps for each thread that asked for it.
+    """Returns freed memory of the C library's per-thread heaps to the system.
 
-    A session that is made in a thread of its own would leave some 13 MB each time, up to four times. Takes
-    some milliseconds. Only glibc has the call, and only its heaps need it.
+    A session prepared in a thread would leave some 13 MB each time, up to four times. Takes some milliseconds. Only
+    glibc has the call, and only its heaps need it.
     """
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:

@@ -1,4 +1,4 @@
-"""The first session of a daemon, prepared when its outputs are open, beside the main thread, which a signal ends."""
+"""Prepares the first session of a daemon after opening its outputs, in a thread, so that signals end the main thread."""
 
 import logging
 from collections.abc import Callable
@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 
-from mocapd.app.daemon.cache_warmup import Preparation, preparing_apart
+from mocapd.app.daemon.cache_warmup import Preparation, prepare_in_background
 from mocapd.app.daemon.heap import give_back
 from mocapd.app.daemon.notifier import Notifier
 from mocapd.app.terminal.progress import ProgressBars
@@ -14,8 +14,8 @@ from mocapd.config.sections import Config
 from mocapd.service.open_outputs import OpenOutputs
 from mocapd.session.session import Session, SessionPlan, open_planned, plan_session
 
-PATIENCE_S = 1800.0  # for a first start on a slow machine, or for another daemon's that fills the same cache [s]
-_LOOK_S = 0.2  # how often the main thread can be interrupted [s]
+PREPARATION_TIMEOUT_S = 1800.0  # a first start on a slow machine, or behind another daemon's [s]
+_LOOK_S = 0.2  # poll interval of the main thread, which signals may interrupt [s]
 _EARLY_TRACKER = "shirt"
 
 _log = logging.getLogger(__name__)
@@ -23,8 +23,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FirstSession:
-    """`session` and the configuration that it is of. preparation: what still goes on beside it; over, where the session
-    is the one that was asked for."""
+    """`session` and its configuration. preparation: still running for an early session, else over."""
 
     session: Session
     config: Config
@@ -39,20 +38,19 @@ def first_session(
     on_open: Callable[[], None] = lambda: None,
     on_progress: Callable[[str], None] = lambda _: None,
 ) -> FirstSession:
-    """Open the outputs, say so, also to `on_open`, and then prepare what they will send from; `on_progress` hears
-    where that stands. What is left to prepare then ends with `held`. Called by the main thread, while it is the only
-    one. Raises what opening them or a session raises.
+    """Opens the outputs, calls `on_open`, and prepares the session; reports to `on_progress`. A remaining preparation ends
+    with `held`. Call it in the main thread, while it is the only one. Raises the errors of outputs and session.
 
-    A signal's exception leaves another thread at work: see `end_despite_work`.
+    A signal's exception leaves a thread running: see `end_despite_work`.
     """
 
-    def tell(text: str) -> None:
+    def report(text: str) -> None:
         notifier.status(text)
         on_progress(text)
 
     plan = plan_session(config)
     try:
-        preparation = held.enter_context(preparing_apart(config))
+        preparation = held.enter_context(prepare_in_background(config))
         outputs.open()
         on_open()
         notifier.ready(
@@ -60,8 +58,8 @@ def first_session(
             if preparation.is_needed
             else "preparing the tracker"
         )
-        notifier.patience(PATIENCE_S)
-        preparation.wait(tell)
+        notifier.extend_watchdog(PREPARATION_TIMEOUT_S)
+        preparation.wait(report)
         is_early = not preparation.is_over
         if is_early:
             config = replace(config, tracker=replace(config.tracker, name=_EARLY_TRACKER))
@@ -69,22 +67,22 @@ def first_session(
             _log.info(
                 "the stream begins with the shirt; legs, head and other clothes follow when they are prepared"
             )
-        tell("preparing the tracker")
-        session = _opened(plan, is_early)
+        report("preparing the tracker")
+        session = _open_in_thread(plan, is_early)
     except BaseException:
         notifier.stopping()
         raise
-    notifier.as_usual()
+    notifier.restore_watchdog()
     on_progress("")
     return FirstSession(session, config, preparation)
 
 
-def _opened(plan: SessionPlan, is_early: bool) -> Session:
+def _open_in_thread(plan: SessionPlan, is_early: bool) -> Session:
     pool = ThreadPoolExecutor(1, "first-session")
     try:
         opening = pool.submit(_open, plan, is_early)
         while wait((opening,), _LOOK_S).not_done:
-            pass  # a signal may end it here
+            pass  # a signal may interrupt here
         session = opening.result()
     finally:
         pool.shutdown(wait=False)

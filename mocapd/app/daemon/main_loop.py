@@ -1,4 +1,4 @@
-"""What `run` and `demo` share: signals, the status line, and how the process ends."""
+"""The main loop of `run` and `demo`: signals, the status line, and the end of the process."""
 
 import os
 import signal
@@ -10,62 +10,58 @@ from collections.abc import Callable, Iterable, Sequence
 from types import FrameType
 from typing import Protocol
 
-from mocapd.app.daemon.early_signals import SIGINT_EXIT, ComesEarly, on_terminal
+from mocapd.app.daemon.early_signals import SIGINT_EXIT, EarlySignal, on_terminal
 from mocapd.app.daemon.end_deadline import EndDeadline
 from mocapd.app.terminal.status_line import StatusLine
 from mocapd.service.service import Service, Snapshot, ThreadDiedError
 
 SHOW_EVERY_S = 0.25  # how often the status line changes [s]
-TELL_EVERY = (
-    4  # health goes out with every fourth of them, and when something has happened to a camera
-)
+PUBLISH_EVERY = 4  # health is published every fourth tick, and after a camera's change of state
 
 END_S = 1.7  # from a signal to the end of a daemon [s]: two seconds are promised
-JOIN_S = 0.2  # what idle threads may take to end [s]
+JOIN_S = 0.2  # timeout of joining idle threads [s]
 
 INTERNAL_ERROR = 70  # EX_SOFTWARE
 
 
 class Stoppable(Protocol):
-    """Something that runs until it is told to end."""
+    """Something that runs until `end`."""
 
     def end(self) -> None: ...
 
 
 class Signals:
-    """SIGTERM and SIGHUP end with 0 and SIGINT with 130: at once while things are set up, then in order.
+    """SIGTERM and SIGHUP end the process with 0, SIGINT with 130: at once during the start, later in order.
 
-    SIGHUP is what a terminal sends that is closed; under nohup it is ignored. With `reloads` and without a
-    terminal it asks for the configuration to be read again instead, see `take_reload`. A second signal has
-    its default effect, should the orderly end hang, apart from SIGHUP, which comes several times.
-
-    While things are set up the end is an exception, which may be swallowed where it is raised (in a finaliser,
-    in the midst of an import): then it comes as soon as there is something to end.
+    A closing terminal sends SIGHUP; under nohup it is ignored. With `reloads` and without a terminal SIGHUP requests a
+    reload instead, see `take_reload`. A second signal has its default effect, in case the orderly end hangs, except
+    SIGHUP, which comes several times. During the start the end is an exception, which a finaliser or import may
+    swallow: `ends` then repeats it.
     """
 
     def __init__(self, reloads: bool = False, within_s: float | None = None) -> None:
-        """within_s: how long the orderly end may take [s]; None: as long as it takes."""
+        """within_s: deadline of the orderly end [s]; None: no deadline."""
         self.exit_code = 0
         self._deadline = None if within_s is None else EndDeadline(within_s, lambda: self.exit_code)
         self._daemon: Stoppable | None = None
-        self._is_told = False
+        self._is_ending = False
         self._terminals = [fd for fd in (1, 2) if os.isatty(fd)]
         for number in (signal.SIGTERM, signal.SIGINT):
-            signal.signal(number, self._caught)
+            signal.signal(number, self._on_end)
         self._reload = False
         before = signal.getsignal(signal.SIGHUP)
         if before is not signal.SIG_IGN:
             asks = reloads and not on_terminal()
-            signal.signal(signal.SIGHUP, self._asked if asks else self._caught)
-            # it may have come while nobody could read anything again
-            self._reload = asks and isinstance(before, ComesEarly) and before.came
+            signal.signal(signal.SIGHUP, self._on_reload if asks else self._on_end)
+            # a SIGHUP during the imports
+            self._reload = asks and isinstance(before, EarlySignal) and before.has_come
 
     def ends(self, daemon: Stoppable) -> None:
-        """From now on a signal ends this in order; also one that came before."""
+        """Registers the daemon that signals end in order; ends it at once after an earlier signal."""
         self._daemon = daemon
         if self._deadline is not None:
             self._deadline.start()
-        if self._is_told:
+        if self._is_ending:
             self._end(daemon)
 
     def _end(self, daemon: Stoppable) -> None:
@@ -74,27 +70,27 @@ class Signals:
         daemon.end()
 
     def take_reload(self) -> bool:
-        """Whether the configuration is to be read again; told once."""
+        """True once after a request to reload."""
         asked, self._reload = self._reload, False
         return asked
 
-    def _asked(self, _number: int, _frame: FrameType | None) -> None:
+    def _on_reload(self, _number: int, _frame: FrameType | None) -> None:
         self._reload = True
 
-    def _caught(self, number: int, _frame: FrameType | None) -> None:
+    def _on_end(self, number: int, _frame: FrameType | None) -> None:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         signal.signal(signal.SIGHUP, signal.SIG_IGN)
         _silence(fd for fd in self._terminals if not os.isatty(fd))
         self.exit_code = SIGINT_EXIT if number == signal.SIGINT else 0
-        self._is_told = True
+        self._is_ending = True
         if self._daemon is None:
             sys.exit(self.exit_code)
         self._end(self._daemon)
 
 
 def _silence(gone: Iterable[int]) -> None:
-    """What is written to a terminal that is gone must not fail: the orderly end comes after it."""
+    """Redirects closed terminals to /dev/null: writing to them would fail and disturb the orderly end."""
     for fd in gone:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, fd)
@@ -102,14 +98,14 @@ def _silence(gone: Iterable[int]) -> None:
 
 
 class LoopHook(Protocol):
-    """What goes on beside the service, in the main thread."""
+    """Additional work of the main loop, in the main thread."""
 
     def on_tick(self, snapshot: Snapshot) -> None:
         """Called several times a second; may replace the service's session."""
         ...
 
     def let_go(self) -> None:
-        """The service is about to end; never blocks for long."""
+        """Called before the service ends; must not block for long."""
         ...
 
 
@@ -120,9 +116,9 @@ def run_daemon(
     hooks: Sequence[LoopHook] = (),
     remark: Callable[[], str] = str,
 ) -> int:
-    """Run until it ends; the exit code. remark: what else the status line says. Raises MocapdError when a named error
-    killed a thread."""
-    # a thread nobody watches must not die unseen either
+    """Runs until the service ends; returns the exit code. remark: a prefix of the status line. Raises the MocapdError
+    that killed a thread."""
+    # an exception in any thread must end the process
     threading.excepthook = lambda args: service.died(args.exc_value or RuntimeError(args.exc_type))
     signals.ends(service)
     try:
@@ -135,8 +131,8 @@ def run_daemon(
                     service.watch()
                     snapshot = service.snapshot()
                     line.show(snapshot, remark())
-                    if ticks % TELL_EVERY == 0 or service.has_news(snapshot):
-                        service.tell(snapshot)
+                    if ticks % PUBLISH_EVERY == 0 or service.has_news(snapshot):
+                        service.publish_status(snapshot)
                     ticks += 1
                     for hook in hooks:
                         hook.on_tick(snapshot)
@@ -150,10 +146,10 @@ def run_daemon(
 
 
 def end_despite_work(exit_code: int) -> None:
-    """End the process at once when threads still work on what nobody waits for any more.
+    """Ends the process at once while threads still work on abandoned results.
 
-    The interpreter would wait for them: the pose database takes half a minute, a kernel to compile
-    some seconds, and neither can be told to stop.
+    The interpreter would wait for them: the pose database takes half a minute, compiling a kernel some seconds, and
+    neither can be interrupted.
     """
     until_s = time.monotonic() + JOIN_S
     for thread in threading.enumerate():

@@ -1,6 +1,6 @@
-"""The service manager's notification socket, sd_notify(3): ready, state, reload, end, and signs of life.
+"""The service manager's notification socket, sd_notify(3): ready, status, reload, stop, and watchdog heartbeats.
 
-Written here because no library fits: sdnotify has seen no release since 2017, and systemd-watchdog times by the wall
+Written here because no library fits: sdnotify has had no release since 2017, and systemd-watchdog times by the wall
 clock, which an NTP step moves; neither knows of reloads or of another time limit.
 """
 
@@ -13,40 +13,40 @@ from mocapd.clock import monotonic_ns
 from mocapd.errors import UnavailableError, one_line
 
 _VARIABLES = ("NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID")
-_SEND_S = 0.2  # a manager that takes nothing for so long is told the next time
-_READY_S = 5.0  # but that we are ready it must hear
+_SEND_S = 0.2  # a message that the manager does not take so long is dropped
+_READY_S = 5.0  # timeout of the message READY, which must arrive
 _PER_US = 1000  # ns
 _LONGEST_LIMIT = 20  # digits: those of 64 bits
-_FEEDS = 4  # signs of life within the time limit
+_FEEDS = 4  # heartbeats within the time limit
 
 
 class Notifier:
-    """Used by one thread. Without a manager everything is said to nobody."""
+    """Not thread-safe. Without a manager every message is dropped."""
 
     def __init__(self, address: str = "", watchdog_ns: int = 0) -> None:
-        """address: of a datagram socket, `@` for an abstract one; watchdog_ns: the longest time without a sign of
-        life, 0 for no limit. Raises UnavailableError."""
+        """address: of a datagram socket, `@` for an abstract one; watchdog_ns: the watchdog's time limit,
+        0 for none. Raises UnavailableError."""
         self._watchdog_ns = watchdog_ns
         self._fed_ns = monotonic_ns()
         self._status = ""
         self._stops = False
         self._socket: socket.socket | None = None
         if address:
-            self._socket = _connected(address)
+            self._socket = _connect(address)
 
     @classmethod
     def of_environment(cls, env: MutableMapping[str, str] | None = None) -> "Notifier":
-        """Of the manager that started this process; its variables go, as they are not meant for children.
+        """The notifier of the manager that started this process. Removes its variables, which children must not inherit.
         Raises UnavailableError."""
         env = os.environ if env is None else env
         address, limit_us, pid = (env.pop(name, "") for name in _VARIABLES)
-        meant = pid in ("", str(os.getpid()))
+        is_for_us = pid in ("", str(os.getpid()))
         is_limit = limit_us.isascii() and limit_us.isdigit() and len(limit_us) <= _LONGEST_LIMIT
-        return cls(address, int(limit_us) * _PER_US if meant and is_limit else 0)
+        return cls(address, int(limit_us) * _PER_US if is_for_us and is_limit else 0)
 
     def ready(self, status: str) -> None:
-        """The outputs are open. Raises UnavailableError when nobody takes that."""
-        # a camera may call itself anything, also in several lines, of which each would be a word of ours
+        """Sends READY: the outputs are open. Raises UnavailableError when it is not taken."""
+        # a camera's name may contain line breaks, which would forge messages
         self._status = status = one_line(status)
         if self._socket is None:
             return
@@ -63,56 +63,55 @@ class Notifier:
             self._socket.settimeout(_SEND_S)
 
     def status(self, text: str) -> None:
-        """A line for people; sent when it is another one."""
+        """Sends a status line for users if it has changed."""
         text = one_line(text)
-        if text != self._status and self._tell(f"STATUS={text}"):
+        if text != self._status and self._try_send(f"STATUS={text}"):
             self._status = text
 
     def reloading(self) -> None:
-        """The configuration is read again, until `reloaded`."""
-        self._tell("RELOADING=1", f"MONOTONIC_USEC={monotonic_ns() // _PER_US}")
+        """Sends RELOADING, until `end_reload`."""
+        self._try_send("RELOADING=1", f"MONOTONIC_USEC={monotonic_ns() // _PER_US}")
 
-    def reloaded(self) -> None:
-        """Well or not, that is over."""
-        self._tell("READY=1")
+    def end_reload(self) -> None:
+        """Sends the end of a reload, successful or not."""
+        self._try_send("READY=1")
 
     def stopping(self) -> None:
-        """The end begins; said once."""
+        """Sends STOPPING once."""
         if not self._stops:
             self._stops = True
-            self._tell("STOPPING=1", "STATUS=stopping")
+            self._try_send("STOPPING=1", "STATUS=stopping")
 
-    def patience(self, patience_s: float) -> None:
-        """Until `as_usual`, so long may pass without a sign of life."""
+    def extend_watchdog(self, limit_s: float) -> None:
+        """Extends the watchdog's time limit to `limit_s` [s], until `restore_watchdog`."""
         if self._watchdog_ns:
-            self._tell(
-                f"WATCHDOG_USEC={max(round(patience_s * 1e6), self._watchdog_ns // _PER_US)}"
-            )
+            limit_us = max(round(limit_s * 1e6), self._watchdog_ns // _PER_US)
+            self._try_send(f"WATCHDOG_USEC={limit_us}")
 
-    def as_usual(self) -> None:
-        """From now on the time limit is again what the manager gave; this is a sign of life."""
+    def restore_watchdog(self) -> None:
+        """Restores the manager's time limit, and sends a heartbeat."""
         if self._watchdog_ns:
-            self._tell(f"WATCHDOG_USEC={self._watchdog_ns // _PER_US}", "WATCHDOG=1")
+            self._try_send(f"WATCHDOG_USEC={self._watchdog_ns // _PER_US}", "WATCHDOG=1")
             self._fed_ns = monotonic_ns()
 
     @property
-    def wants_life(self) -> bool:
-        """Whether a sign of life is due."""
+    def is_heartbeat_due(self) -> bool:
+        """True when the next heartbeat is due."""
         return 0 < self._watchdog_ns <= _FEEDS * (monotonic_ns() - self._fed_ns)
 
-    def alive(self) -> None:
-        """A sign of life."""
-        if self._tell("WATCHDOG=1"):
+    def heartbeat(self) -> None:
+        """Sends a heartbeat."""
+        if self._try_send("WATCHDOG=1"):
             self._fed_ns = monotonic_ns()
 
     def close(self) -> None:
-        """Nothing more is said."""
+        """Closes the socket; later messages are dropped."""
         if self._socket is not None:
             self._socket.close()
             self._socket = None
 
-    def _tell(self, *lines: str) -> bool:
-        """Whether the manager took it; while it is busy or started anew it does not."""
+    def _try_send(self, *lines: str) -> bool:
+        """True if the manager took it; a busy or restarting manager does not."""
         with suppress(OSError):
             self._send(*lines)
             return True
@@ -123,7 +122,7 @@ class Notifier:
             self._socket.send("\n".join(lines).encode())
 
 
-def _connected(address: str) -> socket.socket:
+def _connect(address: str) -> socket.socket:
     """Raises UnavailableError."""
     if address[0] not in "/@":
         raise UnavailableError(

@@ -1,15 +1,14 @@
-"""Whether a daemon gets on: by what it has done, never by the time that has passed. Pure."""
+"""Detects the daemon's progress by its work, never by elapsed time. Pure."""
 
 from mocapd.capture.camera_thread.capture_status import CaptureState
 from mocapd.service.service import Snapshot
 
 
 class ProgressWatch:
-    """The pipeline has come round, which includes the outputs, and every camera that is there has delivered.
+    """Progress means: the pipeline completed a turn, outputs included, and every live camera delivered.
 
-    Without frames the pipeline comes round twice a second by itself, so an empty room and unplugged cameras are no
-    standstill; a tracker that does not return, an output that blocks and a camera that counts as live and sends
-    nothing are.
+    Without frames the pipeline turns twice a second, so an empty room or unplugged cameras are no stall. Stalls are a
+    tracker that does not return, an output that blocks, and a live camera without frames.
     """
 
     def __init__(self) -> None:
@@ -17,8 +16,8 @@ class ProgressWatch:
         self._frames: dict[str, int] = {}
 
     def has_progressed(self, snapshot: Snapshot) -> bool:
-        """Whether all of that has happened since this last said so."""
-        # compared by difference: another session counts anew
+        """True if there was progress since the last call that returned True."""
+        # compared by inequality: another session restarts the counters
         turned = snapshot.metrics.turns != self._turns
         live = {n: s for n, s in snapshot.cameras.items() if s.state is CaptureState.LIVE}
         delivered = all(self._frames.get(name) != status.frames for name, status in live.items())

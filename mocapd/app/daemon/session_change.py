@@ -1,4 +1,4 @@
-"""Another session for a running service: prepared beside the one that runs, then put in its place."""
+"""Replaces the session of a running service: prepares the next one in a thread, then swaps them."""
 
 import logging
 import threading
@@ -13,7 +13,7 @@ from mocapd.app.daemon.notifier import Notifier
 from mocapd.app.daemon.unsafe_settings import unsafe_settings
 from mocapd.app.terminal.logs import set_up_logs
 from mocapd.config.effective import Effective
-from mocapd.config.live_changes import taken_live
+from mocapd.config.live_changes import apply_live_changes
 from mocapd.control.control_messages import Reloaded
 from mocapd.control.reloads import Reloads
 from mocapd.errors import MocapdError
@@ -23,13 +23,13 @@ from mocapd.session.session import Session, open_session
 _log = logging.getLogger(__name__)
 
 SAVED = "a calibration was saved"
-ASKED = "told to read the configuration again"
+ASKED = "reload requested"
 PREPARED = "everything is prepared"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Ready:
-    """What is to run next; `waiting`: what of the configuration is left for the next start."""
+    """The next session; `waiting`: changes of the configuration that need a restart."""
 
     effective: Effective
     waiting: tuple[str, ...]
@@ -37,10 +37,10 @@ class _Ready:
 
 
 class _Preparation:
-    """One preparation, in a thread of its own; the process does not wait for it when it ends.
+    """One preparation, in a thread of its own; the process does not wait for it at its end.
 
-    Configuration and calibration are read again from where they came, and the tracker is built and
-    rehearsed: seconds, in which the session before goes on.
+    Reads configuration and calibration again, builds the tracker and warms it up: seconds, in which the current session
+    goes on.
     """
 
     def __init__(self, service: Service, read: Callable[[], Effective]) -> None:
@@ -52,13 +52,13 @@ class _Preparation:
 
     @property
     def over(self) -> bool:
-        """Whether it has come to an end, good or bad."""
+        """True after its end, successful or not."""
         return not self._thread.is_alive()
 
     def _run(self) -> None:
         try:
             effective = self._read()
-            config, waiting = taken_live(self._service.config, effective.config)
+            config, waiting = apply_live_changes(self._service.config, effective.config)
             session = open_session(config, _quiet)
         except MocapdError as error:
             self.refused = error
@@ -68,8 +68,8 @@ class _Preparation:
 
 
 class SessionChange:
-    """See LoopHook. Changes the session when a setup has saved what the service runs on, and when a signal or
-    another thread, by `reloads`, asks for it. `page`: what the browser shows, None without one."""
+    """See LoopHook. Changes the session after a setup has saved its calibration, or on request by a signal or by
+    `reloads`. `page`: None without one."""
 
     def __init__(
         self,
@@ -79,10 +79,10 @@ class SessionChange:
         page: DaemonPage | None,
         notifier: Notifier,
     ) -> None:
-        """read: the configuration from its sources, as at the start."""
+        """read: reads the configuration from its sources."""
         self._service, self._read, self._signals, self._page = service, read, signals, page
         self.reloads = Reloads()
-        self._notifier = notifier  # hears when a reload begins and ends
+        self._notifier = notifier  # reports the begin and end of a reload
         self._preparation: _Preparation | None = None
         self._why = self._wish = ""
 
@@ -102,12 +102,12 @@ class SessionChange:
                 )
                 self.reloads.settle(preparation.refused)
             if self._why == ASKED:
-                self._notifier.reloaded()
+                self._notifier.end_reload()
             if self._page is not None:
                 self._page.resume()
 
     def ask(self, why: str) -> None:
-        """Prepare another session as soon as none is prepared; by the thread of the loop."""
+        """Requests another session, after a running preparation; call in the loop's thread."""
         self._wish = why
 
     def let_go(self) -> None:
@@ -118,7 +118,7 @@ class SessionChange:
 
     def _begin_if_asked(self) -> None:
         if self._page is not None and self._page.take_saved():
-            # its own tracker goes before another one comes
+            # the setup's tracker ends before another one is built
             self._page.rest()
             self._begin(SAVED)
         elif self._signals.take_reload() | self.reloads.take():
@@ -152,4 +152,4 @@ class SessionChange:
 
 
 def _quiet(_what: str, _done: int, _total: int) -> None:
-    """Bars would be in the way of the status line."""
+    """No progress bars, which would disturb the status line."""

@@ -1,4 +1,4 @@
-"""What goes on beside a running daemon for its service manager: its state in words, and signs of life."""
+"""Reports a running daemon to its service manager: status line and watchdog heartbeats."""
 
 import logging
 
@@ -22,8 +22,8 @@ class Supervision:
     def on_tick(self, snapshot: Snapshot) -> None:
         """See LoopHook."""
         self._notifier.status(state_text(snapshot))
-        if self._notifier.wants_life and self._watch.has_progressed(snapshot):
-            self._notifier.alive()
+        if self._notifier.is_heartbeat_due and self._watch.has_progressed(snapshot):
+            self._notifier.heartbeat()
         if not self._runs and snapshot.metrics.published:
             self._runs = True
             _log.info("the first body is sent: %s", state_text(snapshot))
@@ -34,15 +34,15 @@ class Supervision:
 
 
 def state_text(snapshot: Snapshot) -> str:
-    """Who is tracked, and each camera: only what changes seldom, so no figures."""
+    """Tracking state and camera states, without figures, so that it seldom changes."""
     if not snapshot.metrics.published:
-        who = "waiting for the first frame"
+        person = "waiting for the first frame"
     elif snapshot.metrics.tracking is Tracking.LOST:
         reason = snapshot.metrics.lost_reason
-        who = "nobody is seen" if reason is None else reason.what
+        person = "nobody is seen" if reason is None else reason.what
     else:
-        who = "somebody is tracked"
-    return "; ".join([who, *(_camera(status) for status in snapshot.cameras.values())])
+        person = "somebody is tracked"
+    return "; ".join([person, *(_camera(status) for status in snapshot.cameras.values())])
 
 
 def _camera(status: CaptureStatus) -> str:

@@ -1,4 +1,4 @@
-"""Long work that is made of many parts, some after others, in a few processes side by side; with true progress."""
+"""Runs a graph of tasks in a few parallel processes, and estimates the progress."""
 
 import multiprocessing
 import os
@@ -12,29 +12,29 @@ from multiprocessing.process import BaseProcess
 from mocapd.child_process import end_with_parent
 from mocapd.errors import MocapdError
 
-Share = Callable[[float], None]  # hears how much of a task is done, 0..1
+Share = Callable[[float], None]  # reports the done share of a task, 0..1
 
-_TELL_S = 0.25
+_REPORT_S = 0.25
 _LATER_NICE = 10
-_TRUSTED_S = 3.0  # of work, after which the measured pace counts as much as the one that was given
+_TRUSTED_S = 3.0  # of work, after which measured and given pace have equal weight
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """`seconds`: how long it takes on the machine that the figures are of; `after`: indices of earlier tasks of the list;
-    `is_later`: not among what is waited for first; `tells`: it says how much of it is done."""
+    """`seconds`: duration on the reference machine; `after`: indices of prerequisite tasks, earlier in the list; `is_later`:
+    low priority, not needed for the start; `reports`: it reports its progress."""
 
     what: str
     seconds: float
     work: Callable[[Share], object]
     after: frozenset[int] = frozenset()
     is_later: bool = False
-    tells: bool = False
+    reports: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """Shares 0..1 of the work of each kind (`Task.what`), by expected seconds; left_s: by the pace so far."""
+    """Done shares 0..1 of each kind of work (`Task.what`), by expected seconds; left_s: remaining time [s]."""
 
     shares: dict[str, float]
     left_s: float
@@ -46,7 +46,7 @@ class _Worker:
     pipe: Connection
     task: int = -1
     began_s: float = 0.0
-    told: float = 0.0
+    share: float = 0.0
 
 
 @dataclass(slots=True)
@@ -55,23 +55,23 @@ class _State:
     first_pace: float
     done: set[int] = field(default_factory=set)
     taken: set[int] = field(default_factory=set)
-    spent_s: float = 0.0  # by the clock, of those that are done
-    expected_s: float = 0.0  # likewise, by their own figures
+    spent_s: float = 0.0  # elapsed time of finished tasks
+    expected_s: float = 0.0  # their expected time
 
 
 def run_tasks(
     tasks: Sequence[Task],
     processes: int,
-    tell: Callable[[Progress], None],
+    report: Callable[[Progress], None],
     pace: float = 1.0,
     on_first: Callable[[], None] = lambda: None,
 ) -> bool:
-    """Whether all came to a good end; ends at the first that did not.
+    """Runs all tasks; False at the first failure.
 
-    Of the tasks that may begin, those that are not `is_later` go first, and of these the one with the longest way behind
-    it; on_first: called when none but later ones are left, which then run with little priority. The processes are forks, so
-    what the tasks need is best imported before; they end with this one. Call it while the process has one thread.
-    pace: how much longer than in `Task.seconds` this machine takes, as far as that is known beforehand.
+    List scheduling by critical path: of the runnable tasks those that are not `is_later` go first, then the one with the
+    longest remaining chain. on_first: called when only later tasks remain, which run at low priority. The processes are
+    forks: import the tasks' modules before. They end with this process. Call it while the process has one thread.
+    pace: initial estimate of this machine's time relative to `Task.seconds`.
     """
     fork = multiprocessing.get_context("fork")
     way_s, state, workers = _ways(tasks), _State(tasks, pace), []
@@ -89,11 +89,11 @@ def run_tasks(
                 on_first()
             for worker in workers:
                 _give(worker, state, way_s)
-            for pipe in wait([worker.pipe for worker in workers if worker.task >= 0], _TELL_S):
-                worker = next(one for one in workers if one.pipe is pipe)
-                if not _hear(worker, state):
+            for pipe in wait([worker.pipe for worker in workers if worker.task >= 0], _REPORT_S):
+                worker = next(w for w in workers if w.pipe is pipe)
+                if not _receive(worker, state):
                     return False
-            tell(_progress(workers, state, processes))
+            report(_progress(workers, state, processes))
         return True
     finally:
         for worker in workers:
@@ -102,7 +102,7 @@ def run_tasks(
 
 
 def _ways(tasks: Sequence[Task]) -> list[float]:
-    """Seconds from the beginning of each task to the end of the longest chain of tasks that follow it."""
+    """Critical path: seconds from the start of each task to the end of its longest chain of successors."""
     way_s = [task.seconds for task in tasks]
     for i in range(len(tasks) - 1, -1, -1):
         for before in tasks[i].after:
@@ -117,19 +117,19 @@ def _give(worker: _Worker, state: _State, way_s: Sequence[float]) -> None:
     if worker.task >= 0 or not free:
         return
     worker.task = max(free, key=lambda i: (not state.tasks[i].is_later, way_s[i]))
-    worker.began_s, worker.told = time.monotonic(), 0.0
+    worker.began_s, worker.share = time.monotonic(), 0.0
     state.taken.add(worker.task)
     worker.pipe.send(worker.task)
 
 
-def _hear(worker: _Worker, state: _State) -> bool:
-    """Whether what it says is good."""
+def _receive(worker: _Worker, state: _State) -> bool:
+    """Receives a message; False after a failure."""
     try:
-        said = worker.pipe.recv()
+        message = worker.pipe.recv()
     except EOFError:
         return False
-    if isinstance(said, float):
-        worker.told = said
+    if isinstance(message, float):
+        worker.share = message
     else:
         state.done.add(worker.task)
         state.spent_s += time.monotonic() - worker.began_s
@@ -139,7 +139,7 @@ def _hear(worker: _Worker, state: _State) -> bool:
 
 
 def _progress(workers: Sequence[_Worker], state: _State, processes: int) -> Progress:
-    # what was known beforehand counts like the first seconds of work
+    # the given pace has the weight of _TRUSTED_S of work
     pace = (state.spent_s + _TRUSTED_S * state.first_pace) / (state.expected_s + _TRUSTED_S)
     done_s: dict[str, float] = {}
     all_s: dict[str, float] = {}
@@ -150,7 +150,7 @@ def _progress(workers: Sequence[_Worker], state: _State, processes: int) -> Prog
         if worker.task >= 0:
             task = state.tasks[worker.task]
             guess = min((time.monotonic() - worker.began_s) / max(pace * task.seconds, 1e-3), 0.9)
-            done_s[task.what] += task.seconds * (worker.told if task.tells else guess)
+            done_s[task.what] += task.seconds * (worker.share if task.reports else guess)
     left_s = pace * (sum(all_s.values()) - sum(done_s.values())) / max(1, processes)
     return Progress({what: done_s[what] / max(all_s[what], 1e-9) for what in all_s}, left_s)
 

@@ -1,4 +1,4 @@
-"""What a configuration permits although it is unsafe: one line each, for the log and `check-config`."""
+"""Unsafe settings of a configuration: one line each, for the log and `check-config`."""
 
 import stat
 from pathlib import Path
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def unsafe_settings(effective: "Effective") -> list[str]:
-    """Each with what anybody could do, and the mend. Imports numba: after `prepare_libraries`."""
+    """A line per setting: the possible attack and the fix. Imports numba: call after `prepare_libraries`."""
     return [
         *_camera_passwords(effective),
         *_sites(effective.config.web.allow_origins),
@@ -24,11 +24,11 @@ def unsafe_settings(effective: "Effective") -> list[str]:
 
 
 def _camera_passwords(effective: "Effective") -> list[str]:
-    secret = [one.id for one in effective.config.camera if has_password(one.source)]
+    secret = [camera.id for camera in effective.config.camera if has_password(camera.source)]
     if not secret:
         return []
     names = " and ".join(secret)
-    origin = next(one.origin for one in effective.settings if one.key.path == "camera")
+    origin = next(s.origin for s in effective.settings if s.key.path == "camera")
     if origin == "command line":
         return [
             f"the password of camera {names} stands on the command line, which every user of this"

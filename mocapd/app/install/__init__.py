@@ -1,1 +1,1 @@
-"""What systemd needs of us, put in place and taken away."""
+"""Installs and removes the files of the systemd service."""

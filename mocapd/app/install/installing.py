@@ -1,4 +1,4 @@
-"""The service put in place and taken away: what is done to which file, and what is to be run next."""
+"""Installs and removes the service: steps for each file, and the commands that follow."""
 
 import os
 from collections.abc import Iterator
@@ -23,8 +23,8 @@ _WANTS = "*.wants/mocapd*.service"  # of an enabled unit
 
 @dataclass(frozen=True, slots=True)
 class InstallTarget:
-    """What is installed for. `user`: a unit of this user alone; `root`: a package that is built there, whose
-    units start `python`, this interpreter when None; `dry_run`: nothing is changed."""
+    """Target of an installation. `user`: a unit of this user only; `root`: folder of a package build, whose units start
+    `python`, this interpreter when None; `dry_run`: changes nothing."""
 
     user: bool = False
     root: Path | None = None
@@ -32,7 +32,7 @@ class InstallTarget:
     dry_run: bool = False
 
     def places(self) -> InstallPaths:
-        """Where the files go."""
+        """The target folders."""
         if self.root is not None:
             return of_package(self.root)
         return of_user() if self.user else of_machine()
@@ -40,7 +40,7 @@ class InstallTarget:
 
 @dataclass(frozen=True, slots=True)
 class InstallStep:
-    """What became, or would become, of one file."""
+    """The outcome for one file."""
 
     path: Path
     outcome: Outcome
@@ -48,42 +48,42 @@ class InstallStep:
 
 
 def install(target: InstallTarget, euid: int | None = None) -> list[InstallStep]:
-    """Put everything in place. Raises ConfigError, UsageError, PermissionDeniedError or CannotCreateError."""
+    """Installs all files. Raises ConfigError, UsageError, PermissionDeniedError or CannotCreateError."""
     _require_sense(target, os.geteuid() if euid is None else euid)
     python = target.python or interpreter.own()
     if target.root is None and not target.user:
-        interpreter.require_visible(interpreter.needed(python))
-    # all texts before the first file, so that what is refused leaves nothing half done
+        interpreter.require_visible(interpreter.required_paths(python))
+    # render all texts first: an error then leaves no partial installation
     wanted = list(files(target.places(), python))
-    return [_done(one, _put(one, target.dry_run)) for one in wanted]
+    return [_step_of(file, _put(file, target.dry_run)) for file in wanted]
 
 
 def uninstall(target: InstallTarget, euid: int | None = None) -> list[InstallStep]:
-    """Take away what nobody has changed; the admin's own stays. Raises as `install`, ConfigError also while the
-    service is enabled."""
+    """Removes unchanged files; the admin's own stay. Raises as `install`, ConfigError also while the service is
+    enabled."""
     _require_sense(target, os.geteuid() if euid is None else euid)
     places = target.places()
-    enabled = [*_enabled(places)]
+    enabled = [*_enabled_units(places)]
     if enabled and target.root is None:
         flag = " --user" if target.user else ""
         units = " ".join(sorted({path.name for path in enabled}))
         raise ConfigError(
             "the service is enabled", str(enabled[0]), f"`systemctl{flag} disable --now {units}`"
         )
-    # which interpreter they start does not matter here
-    mine = [one for one in files(places, Path("/python")) if not one.is_admins]
-    done = [_done(one, take_away(one.path, target.dry_run)) for one in mine]
+    # the interpreter's path does not matter here
+    mine = [file for file in files(places, Path("/python")) if not file.is_admins]
+    done = [_step_of(file, take_away(file.path, target.dry_run)) for file in mine]
     if places.examples is not None and not target.dry_run:
         _remove_empty(places.examples)
     return done
 
 
 def next_steps(target: InstallTarget, done: list[InstallStep]) -> list[str]:
-    """The commands that an installation is to be followed by, each with a word on it; none after one for a package."""
+    """The commands to run after an installation, with comments; none for a package."""
     if target.root is not None:
         return []
     news = {Outcome.MADE, Outcome.RENEWED}
-    changed = {one.path.suffix for one in done if one.outcome in news}
+    changed = {step.path.suffix for step in done if step.outcome in news}
     if target.user:
         steps = ["systemctl --user daemon-reload"] if changed else []
         return [
@@ -96,7 +96,7 @@ def next_steps(target: InstallTarget, done: list[InstallStep]) -> list[str]:
     if ".rules" in changed:
         steps.append("udevadm control --reload && udevadm trigger --subsystem-match=usb")
     steps += ["systemctl daemon-reload"] if ".service" in changed else []
-    made = [one.path for one in done if one.is_admins and one.outcome is Outcome.MADE]
+    made = [step.path for step in done if step.is_admins and step.outcome is Outcome.MADE]
     if gid_of(SERVICE_GROUPS[0]) is None:  # systemd-sysusers makes it
         steps += [f"chgrp {SERVICE_GROUPS[0]} {path}" for path in made]
     return [
@@ -108,14 +108,14 @@ def next_steps(target: InstallTarget, done: list[InstallStep]) -> list[str]:
 
 
 def steps_after(target: InstallTarget) -> list[str]:
-    """What is to be run when the files are gone."""
+    """The commands to run after an uninstallation."""
     if target.root is not None:
         return []
     return [f"systemctl{' --user' if target.user else ''} daemon-reload"]
 
 
 def what_stays(target: InstallTarget) -> list[Path]:
-    """What an uninstallation leaves: it is the admin's, or cannot be made again."""
+    """Paths that an uninstallation leaves: the admin's, or irreplaceable."""
     if target.user or target.root is not None:
         return []
     stays = (
@@ -123,17 +123,18 @@ def what_stays(target: InstallTarget) -> list[Path]:
         *("/var/cache/mocapd", "/var/cache/mocapd-node"),
     )
     there = [path for path in map(Path, stays) if path.exists()]
-    # what a service of a user made for it keeps is elsewhere, with a link to it
-    return [*dict.fromkeys(one for path in there for one in (path, path.resolve()))]
+    # systemd stores the state of a DynamicUser elsewhere, with a link to it
+    return [*dict.fromkeys(p for path in there for p in (path, path.resolve()))]
 
 
 def hidden_hint(target: InstallTarget, system: Path = Path("/")) -> str:
-    """What to say of files of a package, below `system`, in whose place ours are read; empty when there are none."""
+    """A hint about files of a package, below `system`, that ours hide; empty without such files."""
     if target.root is not None:
         return ""
-    mine = {_way(one.path) for one in files(target.places(), Path("/python")) if not one.is_admins}
-    theirs = [one.path for one in files(of_package(system), Path("/python"))]
-    hidden = [path for path in theirs if _way(path) in mine and path.exists()]
+    own_files = files(target.places(), Path("/python"))
+    mine = {_unit_key(file.path) for file in own_files if not file.is_admins}
+    theirs = [file.path for file in files(of_package(system), Path("/python"))]
+    hidden = [path for path in theirs if _unit_key(path) in mine and path.exists()]
     if not hidden:
         return ""
     flag, sudo = (" --user", "") if target.user else ("", "sudo ")
@@ -145,8 +146,8 @@ def hidden_hint(target: InstallTarget, system: Path = Path("/")) -> str:
     )
 
 
-def _way(path: Path) -> tuple[str, str]:
-    """What is the same of a file in /etc and of the one in /usr/lib that it hides."""
+def _unit_key(path: Path) -> tuple[str, str]:
+    """The key that a file in /etc shares with the file in /usr/lib that it hides."""
     return path.parent.name, path.name
 
 
@@ -177,34 +178,34 @@ def _require_sense(target: InstallTarget, euid: int) -> None:
         )
 
 
-def _put(one: PlacedFile, dry_run: bool) -> Outcome:
-    if one.is_admins:
-        return put_once(one.path, one.text, dry_run, SERVICE_GROUPS[0])
-    return put(one.path, one.text, dry_run)
+def _put(file: PlacedFile, dry_run: bool) -> Outcome:
+    if file.is_admins:
+        return put_once(file.path, file.text, dry_run, SERVICE_GROUPS[0])
+    return put(file.path, file.text, dry_run)
 
 
-def _done(one: PlacedFile, outcome: Outcome) -> InstallStep:
-    return InstallStep(one.path, outcome, one.is_admins)
+def _step_of(file: PlacedFile, outcome: Outcome) -> InstallStep:
+    return InstallStep(file.path, outcome, file.is_admins)
 
 
-def _enabled(places: InstallPaths) -> Iterator[Path]:
+def _enabled_units(places: InstallPaths) -> Iterator[Path]:
     for folder in (places.units, places.user_units):
         if folder is not None:
             yield from folder.glob(_WANTS)
 
 
 def _remove_empty(folder: Path) -> None:
-    """A folder of drop-ins that was made for the example, unless it has others."""
+    """Removes the folder of the example drop-in unless it has other files."""
     if folder.is_dir() and not any(folder.iterdir()):
         folder.rmdir()
 
 
-def kept_hint(done: list[InstallStep]) -> str:
-    """What to do about files that were changed by hand; empty when there are none."""
-    kept = [one for one in done if one.outcome is Outcome.KEPT]
-    if not kept:
+def changed_files_hint(done: list[InstallStep]) -> str:
+    """A hint about files that were changed by hand; empty without such files."""
+    changed = [str(step.path) for step in done if step.outcome is Outcome.KEPT]
+    if not changed:
         return ""
     return (
-        f"changed by hand: {', '.join(str(one.path) for one in kept)}. What this version would have written is beside"
-        f" it, as {NEW}: move your changes into a drop-in, and that file over this one"
+        f"changed by hand: {', '.join(changed)}. This version's file is in the same folder,"
+        f" as {NEW}: move your changes into a drop-in, and that file over this one"
     )

@@ -1,4 +1,4 @@
-"""The interpreter that a unit starts: it, and mocapd, must be where the service may look."""
+"""The interpreter that a unit starts: the service must have access to it and to mocapd."""
 
 import stat
 import sys
@@ -17,26 +17,26 @@ _FIX = (
 
 
 def own() -> Path:
-    """That which runs this, in its own environment: a link is not followed, as it would lead out of that."""
+    """The running interpreter. Keeps the link of a virtual environment, which `resolve` would leave."""
     return Path(sys.executable)
 
 
-def needed(python: Path) -> tuple[Path, ...]:
-    """What the service reads at its start: the interpreter, what it is a link to, the libraries, mocapd itself."""
-    found = (python, python.resolve(), Path(sys.prefix), Path(sys.base_prefix))
-    return (*dict.fromkeys((*found, Path(mocapd.__file__).parent)),)
+def required_paths(python: Path) -> tuple[Path, ...]:
+    """Paths that the service reads at its start: the interpreter, its link's target, the libraries, mocapd itself."""
+    paths = (python, python.resolve(), Path(sys.prefix), Path(sys.base_prefix))
+    return (*dict.fromkeys((*paths, Path(mocapd.__file__).parent)),)
 
 
 def require_visible(paths: Iterable[Path], hidden: Iterable[Path] = HIDDEN) -> None:
-    """Raises ConfigError naming what a service of its own user cannot read, and why."""
+    """Raises ConfigError that names a path without access for the service's user, and the reason."""
     for path in paths:
-        for one in hidden:
-            if path.is_relative_to(one):
-                raise ConfigError(f"a service does not see {one}", str(path), _FIX)
-        for one in (path, *path.parents):
-            if not _open_to_all(one):
+        for folder in hidden:
+            if path.is_relative_to(folder):
+                raise ConfigError(f"a service does not see {folder}", str(path), _FIX)
+        for folder in (path, *path.parents):
+            if not _open_to_all(folder):
                 raise ConfigError(
-                    f"others may not look into {one}, and a service has a user of its own",
+                    f"others may not look into {folder}, and a service has a user of its own",
                     *(str(path), _FIX),
                 )
 

@@ -1,4 +1,4 @@
-"""A file of ours in a folder of the system's: renewed while nobody has changed it, else left alone."""
+"""Our files in the system's folders: updated while unchanged by hand, else left alone."""
 
 import grp
 import hashlib
@@ -15,7 +15,7 @@ from mocapd.whole_file import whole_file
 
 MODE = 0o644
 SECRET_MODE = 0o640  # with the group of the service that reads it
-NEW = ".new"  # what would have been written, beside a file that was changed
+NEW = ".new"  # suffix of our version of a file that was changed by hand
 
 _MOST_BYTES = 1 << 20
 _HEAD = (
@@ -25,7 +25,7 @@ _FIRST_LINE = re.compile(rb"# Made by `mocapd install-service`[^\n]* \[([0-9a-f]
 
 
 class Outcome(StrEnum):
-    """What became of a file, or would become of it."""
+    """The outcome for a file, or the expected outcome of a dry run."""
 
     MADE = "made"
     RENEWED = "renewed"
@@ -35,13 +35,13 @@ class Outcome(StrEnum):
     ABSENT = "was not there"
 
 
-def marked(text: str, better: str) -> str:
-    """With a first line by which a later change is seen. better: what to do instead of changing the file."""
+def with_marker(text: str, better: str) -> str:
+    """Adds a first line with a checksum that reveals later changes. better: advice instead of changing the file."""
     return f"{_HEAD} {better} [{_digest(text.encode())}]\n{text}"
 
 
 def put(path: Path, text: str, dry_run: bool) -> Outcome:
-    """Write a marked text, or only say what would be done. One that was changed stays, with ours beside it.
+    """Writes a text with marker, except in a dry run. A file that was changed stays; ours gets the suffix NEW.
 
     Raises PermissionDeniedError or CannotCreateError.
     """
@@ -59,9 +59,9 @@ def put(path: Path, text: str, dry_run: bool) -> Outcome:
 
 
 def put_once(path: Path, text: str, dry_run: bool, group: str) -> Outcome:
-    """Write a text that is the admin's from then on, where there is none. Raises as `put`.
+    """Writes a missing file, which then belongs to the admin. Raises as `put`.
 
-    It may come to hold passwords: besides its owner only the group may read it, root's while there is no such group.
+    It may hold passwords: readable by owner and group only, root's group while `group` does not exist.
     """
     if _read(path) is not None:
         return Outcome.UNCHANGED
@@ -71,7 +71,7 @@ def put_once(path: Path, text: str, dry_run: bool, group: str) -> Outcome:
 
 
 def gid_of(group: str) -> int | None:
-    """None while there is no such group."""
+    """The group's id; None for a missing group."""
     try:
         return grp.getgrnam(group).gr_gid
     except KeyError:
@@ -79,12 +79,12 @@ def gid_of(group: str) -> int | None:
 
 
 def take_away(path: Path, dry_run: bool) -> Outcome:
-    """Remove what nobody has changed, and what was put beside it. Raises as `put`."""
+    """Removes an unchanged file, and its version with the suffix NEW. Raises as `put`."""
     there = _read(path)
-    beside = path.with_name(path.name + NEW)
-    with _told(path):
+    newer = path.with_name(path.name + NEW)
+    with _named_errors(path):
         if not dry_run:
-            beside.unlink(missing_ok=True)
+            newer.unlink(missing_ok=True)
         if there is None:
             return Outcome.ABSENT
         if not is_unchanged(there):
@@ -95,9 +95,9 @@ def take_away(path: Path, dry_run: bool) -> Outcome:
 
 
 def is_unchanged(data: bytes) -> bool:
-    """Whether this is what a version of ours has written."""
-    found = _FIRST_LINE.match(data)
-    return found is not None and found[1].decode() == _digest(data[found.end() :])
+    """True if the checksum of the marker fits: the file is as some version wrote it."""
+    marker = _FIRST_LINE.match(data)
+    return marker is not None and marker[1].decode() == _digest(data[marker.end() :])
 
 
 def _digest(data: bytes) -> str:
@@ -105,7 +105,7 @@ def _digest(data: bytes) -> str:
 
 
 def _read(path: Path) -> bytes | None:
-    """None where there is none. Raises CannotCreateError for anything but a regular file."""
+    """The content; None for a missing file. Raises CannotCreateError for anything but a regular file."""
     try:
         return read_file(path, _MOST_BYTES)
     except MissingError:
@@ -117,7 +117,7 @@ def _read(path: Path) -> bytes | None:
 
 
 def _write(path: Path, data: bytes, mode: int = MODE, gid: int | None = None) -> None:
-    with _told(path):
+    with _named_errors(path):
         path.parent.mkdir(mode=0o755, parents=True, exist_ok=True)
         with whole_file(path) as partial:
             partial.write_bytes(data)
@@ -127,8 +127,8 @@ def _write(path: Path, data: bytes, mode: int = MODE, gid: int | None = None) ->
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
-    """An OSError by its name."""
+def _named_errors(path: Path) -> Iterator[None]:
+    """Converts OSError to MocapdError."""
     try:
         yield
     except PermissionError as error:

@@ -1,11 +1,11 @@
-"""Where the service's files go: of this machine, of one user, or of a package that is being built."""
+"""Target folders of the service's files: for this machine, for one user, or for a package build."""
 
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from mocapd.app.install.own_file import marked
+from mocapd.app.install.own_file import with_marker
 from mocapd.app.install.unit_texts import (
     CONFIG,
     EXAMPLE,
@@ -22,7 +22,7 @@ UNIT = "mocapd.service"
 
 @dataclass(frozen=True, slots=True)
 class PlacedFile:
-    """One file; `is_admins`: made once, and from then on not ours."""
+    """One file; `is_admins`: written once, then the admin's."""
 
     path: Path
     text: str
@@ -31,7 +31,7 @@ class PlacedFile:
 
 @dataclass(frozen=True, slots=True)
 class InstallPaths:
-    """Folders; None for what is not placed. `units`, `user_units`: of systemd, `examples`: drop-ins that
+    """Folders; None for files that are not installed. `units`, `user_units`: of systemd, `examples`: drop-ins that
     nothing reads, `rules`: of udev, `config`: of mocapd."""
 
     units: Path | None
@@ -43,7 +43,7 @@ class InstallPaths:
 
 
 def of_machine() -> InstallPaths:
-    """Where an admin's own units are."""
+    """The folders for an admin's own units."""
     units = Path("/etc/systemd/system")
     return InstallPaths(
         units=units,
@@ -56,14 +56,14 @@ def of_machine() -> InstallPaths:
 
 
 def of_user() -> InstallPaths:
-    """Of whoever runs this. No configuration: it would hide that of the machine."""
+    """The folders of the current user. Without a configuration, which would hide the machine's."""
     given = os.environ.get("XDG_CONFIG_HOME", "")
     base = Path(given) if given.startswith("/") else Path.home() / ".config"
     return InstallPaths(units=None, user_units=base / "systemd/user")
 
 
 def of_package(root: Path) -> InstallPaths:
-    """Below `root`, where packages have theirs."""
+    """The folders of packages, below `root`."""
     lib = root / "usr/lib"
     return InstallPaths(
         units=lib / "systemd/system",
@@ -80,19 +80,21 @@ def files(places: InstallPaths, python: Path) -> Iterator[PlacedFile]:
     drop_in = "`systemctl edit {}`"
     if places.units is not None:
         for name in UNITS:
-            text = marked(unit_text(name, python), drop_in.format(name.removesuffix(".service")))
+            text = with_marker(
+                unit_text(name, python), drop_in.format(name.removesuffix(".service"))
+            )
             yield PlacedFile(places.units / name, text)
     if places.user_units is not None:
-        text = marked(unit_text(USER_UNIT, python), drop_in.format("--user mocapd"))
+        text = with_marker(unit_text(USER_UNIT, python), drop_in.format("--user mocapd"))
         yield PlacedFile(places.user_units / UNIT, text)
     if places.examples is not None:
-        text = marked(text_of(EXAMPLE), "a copy")
+        text = with_marker(text_of(EXAMPLE), "a copy")
         yield PlacedFile(places.examples / f"{EXAMPLE}.example", text)
     if places.sysusers is not None:
-        text = marked(text_of(SYSUSERS), "a file of your own beside it")
+        text = with_marker(text_of(SYSUSERS), "a file of your own in the same folder")
         yield PlacedFile(places.sysusers / "mocapd.conf", text)
     if places.rules is not None:
-        text = marked(text_of(RULES), "a file of your own after it")
+        text = with_marker(text_of(RULES), "a file of your own after it")
         yield PlacedFile(places.rules / "70-mocapd-webcams.rules", text)
     if places.config is not None:
         yield PlacedFile(places.config / CONFIG, text_of(CONFIG), is_admins=True)

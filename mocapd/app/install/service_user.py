@@ -1,4 +1,4 @@
-"""A command run as the service runs, with its user, groups, directories and view of the disk: so it finds the service."""
+"""Runs a command in the service's context (user, groups, directories, mounts), so that it finds the service."""
 
 import os
 import re
@@ -15,8 +15,8 @@ import psutil
 from mocapd.errors import PermissionDeniedError, UnavailableError, UsageError
 
 _OF_CALLER = ("TERM", "NO_COLOR", "COLUMNS", "PATH")  # its terminal, and where root's tools are
-# Of the service's own environment, which it may have changed since its start, no more than this: root's tools are started
-# with it, and LD_PRELOAD= or PATH= of a service that was broken into would be obeyed by root.
+# Allow-list of the service's environment variables. The service may change its environment, and root's tools run with
+# it: a compromised service must not pass LD_PRELOAD or PATH.
 _OF_SERVICE = re.compile(
     r"(MOCAPD|XDG|NUMBA|OPENCV|LC)_\w+|(RUNTIME|STATE|CACHE|CONFIGURATION|LOGS)_DIRECTORY|HOME|USER|LOGNAME|LANG"
 )
@@ -26,38 +26,38 @@ _ANSWER_S = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A command line and its environment; of the tools root's own, wherever the service would look for them."""
+    """A command line and its environment; the tools are found by root's PATH."""
 
     argv: tuple[str, ...]
     env: Mapping[str, str]
 
 
 def unit_of(rig: str) -> str:
-    """The service, or that of this rig. Raises UsageError."""
+    """The unit of the service, or of this rig's. Raises UsageError."""
     if rig and not _RIG.fullmatch(rig):
         raise UsageError(f"{rig!r} is no rig's name", "--rig", "as in mocapd@NAME")
     return f"mocapd@{rig}.service" if rig else "mocapd.service"
 
 
 def main_pid(unit: str) -> int:
-    """Of the running service. Raises UnavailableError."""
+    """The pid of the running service. Raises UnavailableError."""
     asked = ("systemctl", "show", "--property=MainPID", "--value", unit)
     try:
-        told = subprocess.run(
+        pid = subprocess.run(
             asked, capture_output=True, text=True, timeout=_ANSWER_S, check=False
         ).stdout.strip()
     except (OSError, subprocess.TimeoutExpired) as error:
         raise UnavailableError(
             f"systemctl does not answer ({error})", unit, "is this machine run by systemd?"
         ) from None
-    if not told.isdigit() or told == "0":
+    if not pid.isdigit() or pid == "0":
         raise UnavailableError("it does not run", unit, f"`systemctl start {unit}`")
-    return int(told)
+    return int(pid)
 
 
 def call_like(pid: int, words: Sequence[str], env: Mapping[str, str] | None = None) -> Call:
-    """`mocapd WORDS` as that process runs; env: the caller's, ours when None. Raises UnavailableError when it is gone,
-    or a tool is missing."""
+    """The call of `mocapd WORDS` in that process's context; env: the caller's, ours when None. Raises UnavailableError
+    when the process has ended or a tool is missing."""
     nsenter, setpriv = (_tool(name) for name in ("nsenter", "setpriv"))
     env = os.environ if env is None else env
     try:
@@ -73,13 +73,13 @@ def call_like(pid: int, words: Sequence[str], env: Mapping[str, str] | None = No
         f"--groups={','.join(groups)}" if groups else "--clear-groups",
         *("--", sys.executable, "-P", "-m", "mocapd.cli.main", *words),
     )
-    kept = {name: env[name] for name in _OF_CALLER if name in env}
+    callers = {name: env[name] for name in _OF_CALLER if name in env}
     own = {name: value for name, value in own.items() if _OF_SERVICE.fullmatch(name)}
-    return Call(argv, own | kept)
+    return Call(argv, own | callers)
 
 
 def become(rig: str, words: Sequence[str]) -> NoReturn:
-    """Go on as that. Raises PermissionDeniedError for anybody but root, UnavailableError."""
+    """Replaces this process by the call. Raises PermissionDeniedError unless root, UnavailableError."""
     unit = unit_of(rig)
     if os.geteuid() != 0:
         raise PermissionDeniedError(
@@ -92,8 +92,8 @@ def become(rig: str, words: Sequence[str]) -> NoReturn:
 
 
 def _tool(name: str) -> str:
-    """Where it is by our own PATH. Raises UnavailableError."""
-    found = shutil.which(name)
-    if found is None:
+    """A tool's path, by our PATH. Raises UnavailableError."""
+    path = shutil.which(name)
+    if path is None:
         raise UnavailableError("is not installed", name, "install util-linux")
-    return str(Path(found).absolute())
+    return str(Path(path).absolute())

@@ -1,4 +1,4 @@
-"""The files of `systemd/` as they are installed: with the command that starts this very mocapd."""
+"""Renders the files of `systemd/` for installation, with the command that starts this mocapd."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ _SPECIAL = "\"'\\$"  # to systemd, in a command line
 
 
 def text_of(name: str) -> str:
-    """A file as it stands there."""
+    """The unrendered text of a file."""
     return systemd_path(name).read_text("utf-8")
 
 
@@ -33,9 +33,9 @@ def unit_text(name: str, python: Path) -> str:
 
 
 def command(python: Path) -> str:
-    """How a unit starts `mocapd`, as its ExecStart= wants it: up to the subcommand.
+    """The beginning of ExecStart=, up to the subcommand.
 
-    -P: of the folder that it is started in nothing is imported.
+    -P: no imports from the working directory.
     """
     path = str(python)
     if not path.startswith("/") or any(c in _SPECIAL or not c.isprintable() for c in path):

@@ -1,1 +1,1 @@
-"""Recording what a daemon publishes, playing it again, exporting it."""
+"""Records a daemon's stream, replays and exports recordings."""

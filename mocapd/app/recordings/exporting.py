@@ -1,4 +1,4 @@
-"""From a recording to motion at a constant rate, for `mocapd export`."""
+"""Resamples a recording to a constant rate, for `mocapd export`."""
 
 import math
 import re
@@ -19,8 +19,8 @@ _NAME = re.compile(r"[!-~]{1,64}")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Exported:
-    """tracked, lost: frames of the recording with this person's pose, and without; other_skeleton: frames left out,
-    as their joints are others than those of the last rest skeleton."""
+    """tracked, lost: number of frames with and without this person's pose; other_skeleton: frames that were dropped, as
+    their joints differ from the last rest skeleton's."""
 
     motion: SampledMotion
     tracked: int
@@ -35,7 +35,7 @@ def motion_of(reader: RecordingReader, person: int, rate_hz: float | None) -> Ex
     lost = 0
     for item in reader.everything():
         if isinstance(item, RestSkeleton) and item.person == person:
-            rest = item  # the last one knows the body best
+            rest = item  # the last one has the best estimate of the body
         elif isinstance(item, SkeletonFrame) and item.person == person:
             if not item.joints:
                 lost += 1
@@ -43,10 +43,10 @@ def motion_of(reader: RecordingReader, person: int, rate_hz: float | None) -> Ex
                 frames.append(item)
     place = str(reader.path)
     if rest is None:
-        raise InputError(f"knows no rest skeleton of person {person}", place, "record it again")
+        raise InputError(f"has no rest skeleton of person {person}", place, "record it again")
     skeleton = _skeleton(rest, place)
     others = len(frames)
-    frames = [one for one in frames if tuple(one.joints) == rest.names]
+    frames = [frame for frame in frames if tuple(frame.joints) == rest.names]
     others -= len(frames)
     if not frames:
         raise InputError(f"person {person} is tracked nowhere in it", place, "record it again")
@@ -64,17 +64,17 @@ def _samples(frames: list[SkeletonFrame]) -> Samples:
     joints = [list(frame.joints.values()) for frame in frames]
     return Samples(
         np.array([frame.capture_unix_ns for frame in frames], dtype=np.int64),
-        np.array([[one.p for one in each] for each in joints]).reshape(*shape, 3),
-        np.array([[one.r for one in each] for each in joints]).reshape(*shape, 4),
-        np.array([[one.c for one in each] for each in joints]).reshape(shape),
-        np.array(
-            [[math.inf if one.u is None else one.u for one in each] for each in joints]
-        ).reshape(shape),
+        np.array([[j.p for j in row] for row in joints]).reshape(*shape, 3),
+        np.array([[j.r for j in row] for row in joints]).reshape(*shape, 4),
+        np.array([[j.c for j in row] for row in joints]).reshape(shape),
+        np.array([[math.inf if j.u is None else j.u for j in row] for row in joints]).reshape(
+            shape
+        ),
     )
 
 
 def _skeleton(rest: RestSkeleton, place: str) -> Skeleton:
-    """Raises InputError for names that no format could hold, or joints without one root."""
+    """Raises InputError for names that no format supports, or without exactly one root."""
     names = rest.names
     if not (
         len(names) <= _MOST_JOINTS

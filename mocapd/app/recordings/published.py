@@ -1,4 +1,4 @@
-"""Everything that a running daemon publishes, one frame after another: for who must not miss any."""
+"""Subscribes to everything that a running daemon publishes, through a long queue that avoids losses."""
 
 import queue
 from collections.abc import Callable
@@ -24,12 +24,12 @@ from mocapd.outputs.wire import SkeletonFrame, decode_message
 from mocapd.outputs.zenoh import keys
 
 MOST_WAITING = 6000  # frames: 100 s at 60 Hz, should the disk stand still
-ASK_S = 2.0  # for what the daemon told before [s]
+ASK_S = 2.0  # timeout of querying the current state [s]
 
 
 @dataclass(frozen=True, slots=True)
 class Published:
-    """One message; `payload` and `mime` as they came."""
+    """One message; `payload` and `mime` as received."""
 
     message: SkeletonFrame | RestSkeleton | CalibrationInfo
     payload: bytes
@@ -37,8 +37,8 @@ class Published:
 
 
 class PublishedStream:
-    """Subscribed from `__enter__` to `__exit__`. `dropped`: messages for which there was no room; `refused`: those
-    of another version, or damaged."""
+    """Subscribed from `__enter__` to `__exit__`. `dropped`: messages lost to a full queue; `refused`: damaged messages or
+    other versions."""
 
     def __init__(self, link: Link) -> None:
         self._link = link
@@ -53,14 +53,14 @@ class PublishedStream:
         try:
             self.instance = _only_instance(session, self._link)
             with zenoh_call():
-                # states first: frames are written by them
+                # states first: the writer needs them for frames
                 for key in (
                     keys.rest_skeleton(self.instance, keys.ANY),
                     keys.calibration(self.instance),
                 ):
                     self._subscribe(session, key)
                     for sample in limited_answers(session, key, ASK_S, MOST_ANSWERS_BYTES):
-                        self._arrived(sample)
+                        self._on_sample(sample)
                 self._subscribe(session, keys.skeleton(self.instance, keys.ANY))
         except BaseException:
             self._opened.close()
@@ -73,17 +73,17 @@ class PublishedStream:
 
     def _subscribe(self, session: zenoh.Session, key: str) -> None:
         # on Zenoh's own thread, as in `client.astream`
-        handler = zenoh.handlers.Callback(self._arrived, indirect=False)
+        handler = zenoh.handlers.Callback(self._on_sample, indirect=False)
         self._opened.enter_context(session.declare_subscriber(key, handler))
 
-    def _arrived(self, sample: zenoh.Sample) -> None:
+    def _on_sample(self, sample: zenoh.Sample) -> None:
         try:
             self._waiting.put_nowait((sample.payload.to_bytes(), str(sample.encoding)))
         except queue.Full:
             self.dropped += 1
 
     def next(self, timeout_s: float) -> Published | None:
-        """The next message in the order of arrival; None: none came in time, or it is not understood."""
+        """The next message in order of arrival; None after the timeout or for an invalid message."""
         try:
             payload, encoding = self._waiting.get(timeout=timeout_s)
         except queue.Empty:
@@ -111,7 +111,7 @@ _DECODERS: dict[str, Callable[[bytes, str], SkeletonFrame | RestSkeleton | Calib
 
 
 def _only_instance(session: zenoh.Session, link: Link) -> str:
-    """The name of the daemon that is meant. Raises ConfigError where several could be."""
+    """The name of the only matching daemon. Raises ConfigError for several."""
     with zenoh_call():
         replies = list(session.liveliness().get(keys.alive(link.instance), timeout=ASK_S))
     names = sorted({str(reply.ok.key_expr).split("/")[-2] for reply in replies if reply.ok})

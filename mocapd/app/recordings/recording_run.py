@@ -1,4 +1,4 @@
-"""What `mocapd record` runs: from the daemon's stream into a file, until told to end."""
+"""Implementation of `mocapd record`: writes the daemon's stream to a file until its end or a signal."""
 
 import time
 from functools import partial
@@ -9,19 +9,19 @@ import numpy as np
 from mocapd.app.daemon.daemon_pictures import DaemonPictures
 from mocapd.app.recordings.published import Published, PublishedStream
 from mocapd.app.terminal.status_line import StatusLine
-from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.clock import monotonic_ns
 from mocapd.latch import Latch
 from mocapd.outputs.mcap.recording_writer import RecordingWriter
 from mocapd.outputs.messages import CalibrationInfo, RestSkeleton
 from mocapd.types import Camera, Rig
 
-_LOOK_S = 0.1  # how often the end and the file's beat are looked after without frames [s]
-_SILENT_S = 2.0  # without frames, before the line says so [s]
+_LOOK_S = 0.1  # poll interval of the end and of the file's flush without frames [s]
+_SILENT_S = 2.0  # without frames, before the status line reports it [s]
 
 
 class Recorder:
-    """One recording; `end` from any thread or a signal handler."""
+    """One recording; `end` is thread-safe and signal-safe."""
 
     def __init__(
         self,
@@ -30,7 +30,7 @@ class Recorder:
         pictures: DaemonPictures | None,
         seconds: float | None,
     ) -> None:
-        """pictures: None for frames alone; seconds: how long, None: until `end`."""
+        """pictures: None for frames only; seconds: duration, None: until `end`."""
         self._stream, self._writer, self._pictures = stream, writer, pictures
         self._seconds = seconds
         self._ended = Latch()
@@ -39,30 +39,30 @@ class Recorder:
         self._attached = False
         self._unix_ns = 0  # of the newest frame
         self._seqs: dict[int, int] = {}
-        self.missed = 0  # frames that the bus did not bring
+        self.missed = 0  # frames lost on the bus
 
     def end(self) -> None:
-        """Make `run` return."""
+        """Makes `run` return."""
         self._ended.set()
 
     def run(self, line: StatusLine) -> None:
-        """Until it ends. Raises CannotCreateError when the file cannot be written any further."""
+        """Records until the end. Raises CannotCreateError when writing fails."""
         began_s = heard_s = time.monotonic()
         while not self._ended.is_set():
             now_s = time.monotonic()
             if self._seconds is not None and now_s - began_s >= self._seconds:
                 return
-            found = self._stream.next(_LOOK_S)
-            if found is not None:
+            received = self._stream.next(_LOOK_S)
+            if received is not None:
                 heard_s = now_s
-                self._write(found)
+                self._write(received)
             if self._pictures is not None:
                 self._pictures.drain(self._writer, time.time_ns())
             self._writer.flush_if_due(monotonic_ns())
             line.say(partial(self._text, now_s - began_s, now_s - heard_s))
 
-    def _write(self, found: Published) -> None:
-        message = found.message
+    def _write(self, received: Published) -> None:
+        message = received.message
         if isinstance(message, RestSkeleton | CalibrationInfo):
             if isinstance(message, RestSkeleton):
                 self._rest = message
@@ -73,34 +73,34 @@ class Recorder:
         self._unix_ns = message.capture_unix_ns
         if not self._attached:
             self._attached = True
-            if self._pictures is None:  # else the daemon says more, and by itself
-                self._writer.attach(self._known(), message.capture_unix_ns)
-        self._writer.frame(message, found.payload, found.mime)
+            if self._pictures is None:  # else the daemon sends its metadata
+                self._writer.attach(self._metadata(), message.capture_unix_ns)
+        self._writer.frame(message, received.payload, received.mime)
         before = self._seqs.get(message.person, message.seq - 1)
-        self.missed += max(0, message.seq - before - 1)  # a daemon that starts anew counts from 0
+        self.missed += max(0, message.seq - before - 1)  # a restarted daemon counts from 0
         self._seqs[message.person] = message.seq
 
-    def _known(self) -> RecordedKnown:
+    def _metadata(self) -> RecordingMetadata:
         cameras = self._calibration.cameras if self._calibration is not None else ()
         rig = Rig(
             tuple(
                 Camera(
-                    one.name,
-                    one.size_px,
-                    np.array(one.K).reshape(3, 3),
-                    np.array(one.dist),
-                    np.array(one.R).reshape(3, 3),
-                    np.array(one.t_m),
+                    camera.name,
+                    camera.size_px,
+                    np.array(camera.K).reshape(3, 3),
+                    np.array(camera.dist),
+                    np.array(camera.R).reshape(3, 3),
+                    np.array(camera.t_m),
                 )
-                for one in cameras
+                for camera in cameras
             )
         )
-        return RecordedKnown(
+        return RecordingMetadata(
             rig if cameras else None, self._rest.stature_m if self._rest is not None else None
         )
 
     def _text(self, took_s: float, silent_s: float) -> str:
-        """The line for people."""
+        """The status line."""
         writer, stream = self._writer, self._stream
         parts = [f"recording {writer.path}", duration(took_s), f"{writer.frames} frames"]
         if self._pictures is not None:
@@ -120,11 +120,11 @@ class Recorder:
 
 
 def duration(seconds: float) -> str:
-    """As 0:12:34."""
+    """A duration as H:MM:SS."""
     whole = int(seconds)
     return f"{whole // 3600}:{whole // 60 % 60:02}:{whole % 60:02}"
 
 
 def default_path() -> Path:
-    """By the time of day, here."""
+    """A file name with the local date and time."""
     return Path(time.strftime("mocapd-%Y%m%d-%H%M%S.mcap"))

@@ -1,8 +1,7 @@
-"""What `mocapd replay` runs: a recording through the outputs, in real time, as if it were now.
+"""Implementation of `mocapd replay`: sends a recording through the outputs in real time, with current times.
 
-Each frame is sent as long after the first as it was published after it, and says that it was captured just as
-long before as it was then: what a game does with capture times, to predict or to show its latency, works. Frames
-are numbered on from loop to loop, the names of the daemon and its keys are this daemon's.
+Intervals between publications and the delay from capture to publication are those of the recording, so capture times
+work for prediction and latency displays. Frame numbers continue across loops; names and keys are this daemon's.
 """
 
 import itertools
@@ -21,13 +20,13 @@ from mocapd.outputs.mcap.recording_reader import Recorded, RecordingReader
 from mocapd.outputs.wire import SkeletonFrame
 
 _log = logging.getLogger(__name__)
-LONGEST_PAUSE_NS = 60 * NS_PER_S  # between two frames; a longer one is left out, as is a step back
+LONGEST_PAUSE_NS = 60 * NS_PER_S  # between two frames; a longer pause or a step back is skipped
 _STOP_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class ReplayParams:
-    """speed: 1 is as it was; loop: over and over; from_s: into the recording [s]."""
+    """speed: factor, 1 is real time; loop: repeat without end; from_s: start within the recording [s]."""
 
     speed: float = 1.0
     loop: bool = False
@@ -36,7 +35,7 @@ class ReplayParams:
 
 @dataclass(frozen=True, slots=True)
 class ReplayPlace:
-    """Where a replay is: since the start of the recording [s], rounds done, frames sent."""
+    """Position of a replay: time in the recording [s], finished rounds, sent frames."""
 
     at_s: float = 0.0
     rounds: int = 0
@@ -44,7 +43,7 @@ class ReplayPlace:
 
 
 class Replay:
-    """Runs in a thread of its own from `start` until the recording is over or `end`; `place` from any thread."""
+    """Runs in a thread of its own from `start` to the recording's end or `end`; `place` is thread-safe."""
 
     def __init__(
         self,
@@ -64,15 +63,15 @@ class Replay:
         self.place = ReplayPlace()
 
     def start(self) -> None:
-        """Begin; returns at once."""
+        """Starts; returns at once."""
         self._thread.start()
 
     def end(self) -> None:
-        """Make it end; from any thread or a signal handler."""
+        """Ends the replay; thread-safe and signal-safe."""
         self._ended.set()
 
     def wait(self, timeout_s: float) -> bool:
-        """Whether it is over. Raises what ended it: InputError for a file that cannot be played."""
+        """True when it is over. Raises the error that ended it: InputError for an unplayable file."""
         self._thread.join(_STOP_S if self._ended.is_set() else timeout_s)
         if self._error is not None:
             raise self._error
@@ -91,7 +90,7 @@ class Replay:
             self._error = error
 
     def play_once(self, rounds: int = 0) -> None:
-        """The recording once. Raises InputError."""
+        """Plays the recording once. Raises InputError."""
         params, played = self._params, False
         due_ns = self._clock()
         at_ns = 0
@@ -100,7 +99,7 @@ class Replay:
             if self._ended.is_set():
                 return
             if not isinstance(item, SkeletonFrame):
-                self._tell(item)
+                self._send_state(item)
                 continue
             step_ns = _step_ns(before, item)
             before = item
@@ -122,7 +121,7 @@ class Replay:
             )
 
     def _send(self, frame: SkeletonFrame) -> None:
-        """As if it were made now."""
+        """Sends a frame with current times."""
         now_ns = self._clock()
         capture_ns = now_ns - (frame.publish_monotonic_ns - frame.capture_monotonic_ns)
         seq = self._seqs.setdefault(frame.person, itertools.count())
@@ -137,15 +136,15 @@ class Replay:
         for sink in self._sinks:
             sink.send(sent)
 
-    def _tell(self, state: Recorded) -> None:
+    def _send_state(self, state: Recorded) -> None:
         assert not isinstance(state, SkeletonFrame)
-        told = msgspec.structs.replace(state, instance=self._instance)
+        message = msgspec.structs.replace(state, instance=self._instance)
         for sink in self._sinks:
-            sink.send_state(told)
+            sink.send_state(message)
 
 
 def _step_ns(before: SkeletonFrame | None, frame: SkeletonFrame) -> int:
-    """From one frame's publication to the next one's."""
+    """Interval between the publications of two frames [ns]; 0 for a long pause or a step back."""
     if before is None:
         return 0
     step_ns = frame.publish_monotonic_ns - before.publish_monotonic_ns

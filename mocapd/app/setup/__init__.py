@@ -1,1 +1,1 @@
-"""Setups: in a process of their own, from a folder of recordings, and where their page is."""
+"""Setups: in a process of their own, or from a folder of recordings, and the selection of a page."""

@@ -1,4 +1,4 @@
-"""Which of this user's running pages a command is meant for."""
+"""Selects the running page that a command addresses."""
 
 from typing import TYPE_CHECKING
 
@@ -9,15 +9,15 @@ if TYPE_CHECKING:
     from mocapd.web.runtime_file import Running
 
 
-def page_meant(config: "Config") -> "Running":
-    """The one daemon of this user with a page that a command is meant for. Raises UnavailableError or ConfigError."""
+def target_page(config: "Config") -> "Running":
+    """The addressed daemon with a page, of this user. Raises UnavailableError or ConfigError."""
     from mocapd.config.runtime_folder import runtime_folder
-    from mocapd.control.meant import meant
+    from mocapd.control.target_process import select_targets
     from mocapd.web.runtime_file import running
 
-    # a setup by itself has no name
+    # a setup without a daemon has no name
     pages = [page for page in running(runtime_folder(config.state_dir)) if page.instance]
-    chosen = meant(pages, config)
+    chosen = select_targets(pages, config)
     if not chosen:
         raise UnavailableError(
             "no mocapd of yours is running that has a page",
@@ -25,7 +25,7 @@ def page_meant(config: "Config") -> "Running":
             "start `mocapd run`, with web.enabled = true",
         )
     if len(chosen) > 1:
-        names = ", ".join(f"{one.instance} (pid {one.pid})" for one in chosen)
+        names = ", ".join(f"{page.instance} (pid {page.pid})" for page in chosen)
         raise ConfigError(
             f"several are running: {names}", "command line", "choose by --set instance=NAME"
         )

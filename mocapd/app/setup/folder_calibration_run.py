@@ -1,4 +1,4 @@
-"""`mocapd calibrate --from-folder`: from recordings of a board to a file, without a page."""
+"""Implementation of `mocapd calibrate --from-folder`: calibrates from recordings of a board, without a page."""
 
 import json
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ _WORTH_SAYING = 0.1  # frames that a camera exposes later than the first
 
 @dataclass(frozen=True, slots=True)
 class FolderOptions:
-    """What was said on the command line; None or "" where it was not."""
+    """Command line options; None or "" when not given."""
 
     folder: Path
     out: Path | None
@@ -40,7 +40,7 @@ class FolderOptions:
 
 
 def calibrate_folder(options: FolderOptions, config: "Config") -> None:
-    """Find the board, solve, write. Raises MocapdError; what is there already stays then."""
+    """Detects the board, solves, writes the file. Raises MocapdError and then changes no file."""
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs
 
@@ -59,33 +59,35 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
     target = OutputFile(out, kind, options.force, inputs=read)
     target.check()
     with ProgressBars() as progress:
-        found = solve(options.folder, spec, progress, options.floor_frame)
-    found = _with_notes(found, _unrecorded(found.rig.names, [one.id for one in config.camera]))
+        result = solve(options.folder, spec, progress, options.floor_frame)
+    result = _with_notes(
+        result, _missing_recordings(result.rig.names, [c.id for c in config.camera])
+    )
     if out.suffix == ".toml":
         from mocapd.app.setup.saving_from_folder import save_from_folder, stroked_pictures
 
         strokes = options.strokes
-        pictures = stroked_pictures(strokes, found.rig) if strokes is not None else {}
+        pictures = stroked_pictures(strokes, result.rig) if strokes is not None else {}
         if strokes is not None:
-            found = _with_notes(found, _unpainted(set(found.rig.names) - set(pictures)))
+            result = _with_notes(result, _missing_strokes(set(result.rig.names) - set(pictures)))
         floor_known = options.floor_frame is not None
-        save_from_folder(out, found, options.folder, floor_known, pictures, config.camera)
+        save_from_folder(out, result, options.folder, floor_known, pictures, config.camera)
     else:
-        write_rig(target, found.rig)
-    for note in found.notes:
+        write_rig(target, result.rig)
+    for note in result.notes:
         typer.echo(f"mocapd: {note}", err=True)
     if options.as_json:
-        print(json.dumps(_as_dict(found)))
+        print(json.dumps(_as_dict(result)))
     else:
-        print(_as_text(found, out))
+        print(_as_text(result, out))
 
 
-def _with_notes(found: "FolderCalibration", notes: tuple[str, ...]) -> "FolderCalibration":
-    return replace(found, notes=(*found.notes, *notes))
+def _with_notes(result: "FolderCalibration", notes: tuple[str, ...]) -> "FolderCalibration":
+    return replace(result, notes=(*result.notes, *notes))
 
 
-def _unrecorded(recorded: Sequence[str], configured: Sequence[str]) -> tuple[str, ...]:
-    """Names the cameras of the configuration that have no recording, where others of it have one."""
+def _missing_recordings(recorded: Sequence[str], configured: Sequence[str]) -> tuple[str, ...]:
+    """A note that names configured cameras without a recording, if other configured cameras have one."""
     missing = [name for name in configured if name not in recorded]
     if not missing or len(missing) == len(configured):
         return ()
@@ -95,8 +97,8 @@ def _unrecorded(recorded: Sequence[str], configured: Sequence[str]) -> tuple[str
     )
 
 
-def _unpainted(names: set[str]) -> tuple[str, ...]:
-    """Names the cameras without a picture of strokes."""
+def _missing_strokes(names: set[str]) -> tuple[str, ...]:
+    """A note that names cameras without stroke pictures."""
     files = ", ".join(f"{name}.png" for name in sorted(names))
     note = (
         f"--strokes lacks {files}: those cameras see the shirt's colours as in neutral light"
@@ -106,7 +108,7 @@ def _unpainted(names: set[str]) -> tuple[str, ...]:
 
 
 def _complete(options: FolderOptions) -> tuple[Path, "BoardSpec"]:
-    """The file to write and the board. Raises UsageError naming every option that is missing."""
+    """The output file and the board. Raises UsageError that names all missing options."""
     from mocapd.calibration.board_spec import BoardKind, BoardSpec, board_size
 
     wanted = {"--out": options.out, "--board-size": options.size, "--square": options.square_m}
@@ -132,62 +134,62 @@ def _complete(options: FolderOptions) -> tuple[Path, "BoardSpec"]:
     return options.out, spec
 
 
-def _as_dict(found: "FolderCalibration") -> dict[str, object]:
-    area = found.play_area
+def _as_dict(result: "FolderCalibration") -> dict[str, object]:
+    area = result.play_area
     return {
-        "rms_px": round(found.rms_px, 4),
+        "rms_px": round(result.rms_px, 4),
         "play_area_cm": None
         if area is None
         else {"median": round(area.median_cm, 3), "p95": round(area.p95_cm, 3)},
-        "positions": found.positions,
+        "positions": result.positions,
         "cameras": {
             name: {
-                "rms_px": round(one.rms_px, 4),
-                "held_out_px": round(one.held_out_px, 4),
-                "views": one.views,
-                "backs": one.backs,
-                "pictures": one.pictures,
-                "covered": round(one.covered, 3),
-                "delay_frames": round(one.delay_frames, 3),
-                "focal_deviation": round(one.focal_deviation, 5),
-                "place_cm": round(one.place_cm, 3),
+                "rms_px": round(report.rms_px, 4),
+                "held_out_px": round(report.held_out_px, 4),
+                "views": report.views,
+                "backs": report.backs,
+                "pictures": report.pictures,
+                "covered": round(report.covered, 3),
+                "delay_frames": round(report.delay_frames, 3),
+                "focal_deviation": round(report.focal_deviation, 5),
+                "place_cm": round(report.place_cm, 3),
             }
-            for name, one in found.cameras.items()
+            for name, report in result.cameras.items()
         },
         "refused": {
             name: {
-                "no_board": one.no_board,
-                "views": list(one.refused_views),
-                "corners": one.refused_corners,
+                "no_board": report.no_board,
+                "views": list(report.refused_views),
+                "corners": report.refused_corners,
             }
-            for name, one in found.cameras.items()
+            for name, report in result.cameras.items()
         },
         "board": {
-            "inverted": found.board.inverted,
-            "legacy": found.board.legacy,
-            "two_sided": found.board.two_sided,
+            "inverted": result.board.inverted,
+            "legacy": result.board.legacy,
+            "two_sided": result.board.two_sided,
         },
         "back": None
-        if found.gluing is None
-        else {name: round(value, 2) for name, value in asdict(found.gluing).items()},
-        "notes": list(found.notes),
+        if result.gluing is None
+        else {name: round(value, 2) for name, value in asdict(result.gluing).items()},
+        "notes": list(result.notes),
     }
 
 
-def _as_text(found: "FolderCalibration", out: Path) -> str:
-    area = found.play_area
+def _as_text(result: "FolderCalibration", out: Path) -> str:
+    area = result.play_area
     cm = "" if area is None else f", {area.median_cm:.2f} cm in the play area"
-    lines = [f"{out}: {found.rms_px:.2f} px{cm}, {found.positions} positions of the board"]
+    lines = [f"{out}: {result.rms_px:.2f} px{cm}, {result.positions} positions of the board"]
     lines += [
-        f"{name}  {one.rms_px:.2f} px, {one.held_out_px:.2f} px held out, "
-        f"{one.views} of {one.pictures} pictures"
+        f"{name}  {report.rms_px:.2f} px, {report.held_out_px:.2f} px held out, "
+        f"{report.views} of {report.pictures} pictures"
         + (
-            f", {one.delay_frames:+.2f} frames late"
-            if abs(one.delay_frames) >= _WORTH_SAYING
+            f", {report.delay_frames:+.2f} frames late"
+            if abs(report.delay_frames) >= _WORTH_SAYING
             else ""
         )
-        + (f", {one.backs} of the board's back" if one.backs else "")
-        for name, one in found.cameras.items()
+        + (f", {report.backs} of the board's back" if report.backs else "")
+        for name, report in result.cameras.items()
     ]
-    lines += [] if found.gluing is None else [f"the back of the board lies {found.gluing}"]
+    lines += [] if result.gluing is None else [f"the back of the board lies {result.gluing}"]
     return "\n    ".join(lines)

@@ -1,4 +1,4 @@
-"""A calibration from recordings as the file that the daemon runs on, with colours from stroke images."""
+"""Saves a calibration from recordings as the daemon's calibration file, with colours from stroke images."""
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
@@ -28,8 +28,8 @@ from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name
 
 
 def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
-    """NAME.png with NAME_strokes.png of each camera that has them. Raises InputError when none has, and
-    naming what is wrong with the strokes of one."""
+    """Reads NAME.png with NAME_strokes.png of each camera that has them. Raises InputError when none has, or for bad
+    strokes."""
     require_pictures(strokes)
     model = colour_model(())
     pictures = {}
@@ -37,9 +37,9 @@ def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
         image = strokes / f"{camera.name}.png"
         if not is_file(image):
             continue
-        one = read_labelled(image)
-        require_good_strokes(one.pixels, one.labels, model, str(strokes_beside(image)))
-        pictures[camera.name] = one
+        picture = read_labelled(image)
+        require_good_strokes(picture.pixels, picture.labels, model, str(strokes_beside(image)))
+        pictures[camera.name] = picture
     if not pictures:
         names = ", ".join(f"{name}.png" for name in rig.names)
         raise InputError("holds no picture of a camera", str(strokes), f"put {names} there")
@@ -48,17 +48,17 @@ def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
 
 def save_from_folder(
     out: Path,
-    found: FolderCalibration,
+    result: FolderCalibration,
     recordings: Path,
     floor_known: bool,
     pictures: Mapping[str, LabelledPicture],
     cameras: tuple[CameraSection, ...],
 ) -> None:
-    """Write it all. cameras: those of the configuration, whose sources are taken where the ids agree;
-    else a camera's source is its recording. Raises CannotCreateError."""
-    sources = {one.name: str(one.path.absolute()) for one in find_recordings(recordings)}
-    sources |= {one.id: one.source for one in cameras}
-    area = found.play_area
+    """Writes the file. cameras: of the configuration; a camera's source is the configured one of the same id, else its
+    recording. Raises CannotCreateError."""
+    sources = {r.name: str(r.path.absolute()) for r in find_recordings(recordings)}
+    sources |= {camera.id: camera.source for camera in cameras}
+    area = result.play_area
     W = white_balances(pictures, colour_model(()))
     saved = SavedCalibration(
         schema=SCHEMA,
@@ -69,14 +69,14 @@ def save_from_folder(
         ),
         room=RoomFit(
             method="board",
-            rms_px=figure(found.rms_px),
+            rms_px=figure(result.rms_px),
             play_area_cm=None if area is None else figure(area.median_cm),
             floor_known=floor_known,
         ),
-        board=found.board,
+        board=result.board,
         camera=tuple(
-            _camera(one, sources[one.name], found.cameras[one.name], W.get(one.name))
-            for one in found.rig.cameras
+            _camera(camera, sources[camera.name], result.cameras[camera.name], W.get(camera.name))
+            for camera in result.rig.cameras
         ),
     )
     write_calibration(out, saved, pictures, own_folder=False)

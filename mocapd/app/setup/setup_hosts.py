@@ -1,4 +1,4 @@
-"""Whose cameras a setup by itself uses: the webcams of this machine, or simulated ones."""
+"""Hosts of a setup without a daemon: with this machine's webcams, or with simulated ones."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def webcam_host(config: "Config", step: "StepName | None", following: str) -> OwnHost:
-    """The cameras of the configuration, else all that are plugged in; following: the command to run afterwards. Raises
+    """A host with the configured cameras, else all plugged ones; following: the command to run afterwards. Raises
     MocapdError."""
     from mocapd.capture.webcam.webcam_listing import list_cameras
     from mocapd.wizard.cameras.initial_cameras import (
@@ -31,18 +31,18 @@ def webcam_host(config: "Config", step: "StepName | None", following: str) -> Ow
     from mocapd.wizard.setup_keeper import unfinished_cameras
 
     before, infos = _with_passwords(saved_draft(config, step), config), list_cameras()
-    known = unfinished_cameras(config.state_dir, before.cameras)
+    saved = unfinished_cameras(config.state_dir, before.cameras)
     if step is not None:
-        for one in before.cameras:
-            require_password(one.id, one.source, str(config.state_dir))
+        for camera in before.cameras:
+            require_password(camera.id, camera.source, str(config.state_dir))
         draft = replace(before, cameras=where_now(before.cameras, infos))
     else:
         cameras = (
-            configured_cameras(config.camera, known)
+            configured_cameras(config.camera, saved)
             if config.camera
-            else plugged_cameras(infos, known)
+            else plugged_cameras(infos, saved)
         )
-        # what was typed once need not be typed again
+        # reuse earlier input
         draft = Draft(
             cameras=cameras,
             board=before.board,
@@ -61,21 +61,19 @@ def webcam_host(config: "Config", step: "StepName | None", following: str) -> Ow
 
 
 def _with_passwords(draft: Draft, config: "Config") -> Draft:
-    """With those of the configuration, where they are not kept with the calibration."""
-    known = sources_by_masked((one.id, one.source) for one in config.camera)
-    cameras = (
-        replace(one, source=known.get((one.id, one.source), one.source)) for one in draft.cameras
-    )
+    """Adds passwords of the configuration that the calibration lacks."""
+    sources = sources_by_masked((camera.id, camera.source) for camera in config.camera)
+    cameras = (replace(c, source=sources.get((c.id, c.source), c.source)) for c in draft.cameras)
     return replace(draft, cameras=tuple(cameras))
 
 
 def saved_draft(config: "Config", step: "StepName | None") -> Draft:
-    """The saved calibration, empty without one. Raises ConfigError when `step` alone needs it."""
+    """The saved calibration; empty without one. Raises ConfigError if a single `step` needs a missing one."""
     if not is_absent(config.state_dir / FILE_NAME):
         return load_draft(config.state_dir)
     if step is not None:
         raise ConfigError(
-            f"there is no calibration yet of which {step.value!r} could be done anew",
+            f"there is no calibration yet of which {step.value!r} could be repeated",
             str(config.state_dir),
             "do all steps: `mocapd calibrate`",
         )
@@ -83,7 +81,7 @@ def saved_draft(config: "Config", step: "StepName | None") -> Draft:
 
 
 def settings_of(config: "Config", following: str) -> CheckSettings:
-    """How the daemon of this configuration tracks."""
+    """The tracking settings of this configuration's daemon."""
     from mocapd.session.camera_inputs import bundler_params
 
     bundler = bundler_params(config)
@@ -91,8 +89,8 @@ def settings_of(config: "Config", following: str) -> CheckSettings:
 
 
 def demo_host(config: "Config", step: "StepName | None", following: str) -> OwnHost:
-    """Simulated cameras, before which board and wearer do what each step asks for; following: see webcam_host. Raises
-    MocapdError."""
+    """A host with simulated cameras, board and wearer, which act as each step requires; following: see webcam_host.
+    Raises MocapdError."""
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.calibration.board_spec import BoardKind, BoardSpec
     from mocapd.session.setup_demo import open_demo
@@ -105,18 +103,18 @@ def demo_host(config: "Config", step: "StepName | None", following: str) -> OwnH
         DraftCamera(name, demo.source_of(name), sizes[name], demo.fps_hz)
         for name, _ in demo.cameras
     )
-    known = before
+    draft = before
     if step is None:
         shown = demo.board
         board = BoardSpec(
             BoardKind.CHARUCO, shown.columns, shown.rows, shown.square_m, shown.marker_m,
             shown.dictionary,
         )  # fmt: skip
-        known = Draft(  # nobody can measure them here
+        draft = Draft(  # simulated, so the user cannot measure them
             board=board, stature_m=demo.stature_m, has_shirt=before.has_shirt
         )
     return OwnHost(
-        replace(known, cameras=cameras),
+        replace(draft, cameras=cameras),
         settings_of(config, following),
         config.state_dir,
         config.cache_dir,

@@ -1,4 +1,4 @@
-"""`mocapd calibrate` with its page: attached to the running daemon, or with cameras of its own."""
+"""Implementation of `mocapd calibrate` with its page: attached to a running daemon, or with its own cameras."""
 
 import os
 import shlex
@@ -27,7 +27,7 @@ STAY_S = 6.0  # after Save, so that the page can say so [s]
 
 @dataclass(frozen=True, slots=True)
 class PageOptions:
-    """step: the one to do; own_place: whether the state directory was named on the command line."""
+    """step: a single step to run; own_place: True if the command line gave the state directory."""
 
     step: str | None
     demo: bool
@@ -36,7 +36,7 @@ class PageOptions:
 
 
 def calibrate_page(options: PageOptions, config: "Config") -> int:
-    """Run the setup until it is saved or ended by a signal; the exit code. Raises MocapdError."""
+    """Runs the setup until it is saved or a signal ends it; returns the exit code. Raises MocapdError."""
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs
 
@@ -44,14 +44,14 @@ def calibrate_page(options: PageOptions, config: "Config") -> int:
     prepare_libraries(config.cache_dir)
 
     from mocapd.config.runtime_folder import runtime_folder
-    from mocapd.control.meant import meant
+    from mocapd.control.target_process import select_targets
     from mocapd.web.runtime_file import SETUP, Place, begin_setup, running
 
     step = _step(options.step)
     folder = runtime_folder(config.state_dir)
     pages = () if options.demo else running(folder)
     if pages:
-        there = _the_one(meant(pages, config))
+        there = _the_one(select_targets(pages, config))
         begin_setup(there.url, None if step is None else step.value)
         print(f"the running mocapd has the cameras; its page: {there.url}{SETUP}", flush=True)
         _browse(there.redirect, options.browser)
@@ -59,18 +59,18 @@ def calibrate_page(options: PageOptions, config: "Config") -> int:
     if options.demo and not options.own_place:
         config = replace(config, state_dir=config.state_dir / "demo")
     place = Place(folder, config.state_dir, config.instance, findable=not options.demo)
-    from mocapd.app.daemon.cache_warmup import database_beside
+    from mocapd.app.daemon.cache_warmup import database_in_background
     from mocapd.app.daemon.main_loop import Signals, end_despite_work
 
-    signals = Signals()  # first, so that its end ends the work beside it too
-    with database_beside(config):
+    signals = Signals()  # before the background work, so that a signal ends both
+    with database_in_background(config):
         code = _alone(options, config, step, place, signals)
     end_despite_work(code)
     return code
 
 
 def _the_one(pages: "Sequence[Running]") -> "Running":
-    """The page to attach to. Raises ConfigError when there are several."""
+    """The only page. Raises ConfigError for several."""
     from mocapd.web.runtime_file import SETUP
 
     if len(pages) == 1:
@@ -100,7 +100,7 @@ def _alone(
 
     following = next_command(config.state_dir, usual=not (options.demo or options.own_place))
     host = (demo_host if options.demo else webcam_host)(config, step, following)
-    # a thread nobody watches must not die unseen either
+    # an exception in any thread must end the process
     threading.excepthook = lambda args: host.on_thread_died(
         args.exc_value or RuntimeError(args.exc_type)
     )
@@ -129,7 +129,7 @@ def _alone(
 
 
 def next_command(state_dir: Path, *, usual: bool) -> str:
-    """What starts the daemon on what is saved there; usual: where it looks by itself."""
+    """The command that starts the daemon with the saved calibration; usual: in the default folder."""
     from mocapd.calibration.calibration_file import FILE_NAME
 
     return (
@@ -156,8 +156,8 @@ def _step(name: str | None) -> "StepName | None":
 
 
 def _browse(redirect: Path | None, wanted: bool) -> None:
-    """Open the browser where there is a desktop, with a file that leads it to the page: the page's
-    address has the token, and every user may read a command line."""
+    """Opens the browser on a desktop, by a file that redirects to the page: the address holds the token, and every user
+    can read a command line."""
     if not wanted or redirect is None:
         return
     if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):

@@ -1,1 +1,1 @@
-"""What a person reads in a terminal: progress, the status line, logs, and test motions."""
+"""Terminal output: progress, the status line, logs, and test motions."""

@@ -1,4 +1,4 @@
-"""Logs on stderr: for people on a terminal, with priorities for the systemd journal."""
+"""Logs on stderr: plain for a terminal, with priorities for the systemd journal."""
 
 import logging
 import os
@@ -26,13 +26,13 @@ class JournalFormatter(logging.Formatter):
 
 
 def stderr_is_journal() -> bool:
-    """Whether stderr is the stream that JOURNAL_STREAM names; a child's may be redirected."""
+    """True if stderr is the stream of JOURNAL_STREAM; a child's may be redirected."""
     stat = os.fstat(sys.stderr.fileno())
     return os.environ.get("JOURNAL_STREAM") == f"{stat.st_dev}:{stat.st_ino}"
 
 
 class StderrHandler(logging.StreamHandler[TextIO]):
-    """Writes to what sys.stderr is at that moment: above a progress bar or status line, if any."""
+    """Writes to the current sys.stderr: above a progress bar or status line, if any."""
 
     def emit(self, record: logging.LogRecord) -> None:
         """One record."""

@@ -1,5 +1,4 @@
-"""Progress on stderr, for what takes long: bars on a terminal, else a plain line for each part and each minute; none in the
-journal."""
+"""Progress of long work on stderr: bars on a terminal, else a line per part and minute; nothing in the journal."""
 
 import sys
 import threading
@@ -18,8 +17,8 @@ from rich.progress import (
 
 from mocapd.app.terminal.logs import stderr_is_journal
 
-FIRST_AFTER_S = 2.0  # where there is no terminal; what takes less is not worth a line [s]
-TELL_EVERY_S = 60.0
+FIRST_AFTER_S = 2.0  # shorter work is not reported without a terminal [s]
+REPORT_EVERY_S = 60.0
 
 
 def say(line: str) -> None:
@@ -28,11 +27,10 @@ def say(line: str) -> None:
 
 
 class ProgressBars:
-    """Call it with (what, done, total); each `what` gets a bar. Nothing is shown before that.
+    """Call it with (what, done, total); each `what` gets a bar.
 
-    Without a terminal it tells also while a single part takes long: a kernel to compile may take
-    minutes on a small machine. In the journal nothing is told: nobody waits there, and whoever reads it later
-    wants to know what happened.
+    Without a terminal it also prints during a long part: compiling a kernel may take minutes on a small machine. In the
+    journal it is silent: its readers want events, not progress.
     """
 
     def __init__(self) -> None:
@@ -63,7 +61,7 @@ class ProgressBars:
             self._lines.end(well=error is None)
 
     def __call__(self, what: str, done: int, total: int) -> None:
-        """`done` of `total` parts are made."""
+        """Reports that `done` of `total` parts are finished."""
         if self._is_quiet:
             return
         if not self._console.is_terminal:
@@ -78,7 +76,7 @@ class ProgressBars:
         self._bars.update(self._tasks[what], completed=done, total=total)
 
     def begin(self, what: str) -> None:
-        """What all of it is: a line above the bars, and without a terminal the first line, when it takes long."""
+        """Sets the headline: printed above the bars, or as first line of long work without a terminal."""
         if self._is_quiet or self._lines is not None or self._tasks:
             return
         if self._console.is_terminal:
@@ -88,37 +86,37 @@ class ProgressBars:
 
 
 class _Lines:
-    """Says what begins, where it stands now and then, on its own time, and when each part is done."""
+    """Prints the headline, the progress once a minute, and the end of each part, from a thread."""
 
     def __init__(self, what: str) -> None:
         self._began_s, self._headline = time.monotonic(), what
         self._parts: dict[str, tuple[int, int]] = {}
         self._lock = threading.Lock()
         self._over = threading.Event()
-        self._told = False
+        self._has_printed = False
         self._thread = threading.Thread(target=self._run, name="progress", daemon=True)
         self._thread.start()
 
     def at(self, what: str, done: int, total: int) -> None:
-        """What the next line says of one part; a part that is done is said at once."""
+        """Updates a part; reports its end at once."""
         with self._lock:
             before = self._parts.get(what)
             self._parts[what] = done, total
-        if self._told and before is not None and before[0] < before[1] and done >= total:
+        if self._has_printed and before is not None and before[0] < before[1] and done >= total:
             say(f"{what}: done after {self._spent_s():.0f} s")
 
     def end(self, well: bool) -> None:
-        """Say what is done, if anything was said before."""
+        """Ends the thread; reports the finished parts if anything was printed before."""
         self._over.set()
         self._thread.join()
-        if self._told and well:
-            for what in self._unfinished():
+        if self._has_printed and well:
+            for what in self._open_parts():
                 say(f"{what}: done after {self._spent_s():.0f} s")
 
     def _spent_s(self) -> float:
         return time.monotonic() - self._began_s
 
-    def _unfinished(self) -> dict[str, tuple[int, int]]:
+    def _open_parts(self) -> dict[str, tuple[int, int]]:
         with self._lock:
             parts = dict(self._parts) or {self._headline: (0, 1)}
         return {what: part for what, part in parts.items() if part[0] < part[1]}
@@ -126,11 +124,11 @@ class _Lines:
     def _run(self) -> None:
         if self._over.wait(FIRST_AFTER_S):
             return
-        self._told = True
+        self._has_printed = True
         say(self._headline)
-        while not self._over.wait(TELL_EVERY_S):
+        while not self._over.wait(REPORT_EVERY_S):
             parts = [
-                f"{what}: {100 * a // max(1, b)} %" for what, (a, b) in self._unfinished().items()
+                f"{what}: {100 * a // max(1, b)} %" for what, (a, b) in self._open_parts().items()
             ]
             if parts:
                 say(f"{', '.join(parts)}, {self._spent_s():.0f} s so far")

@@ -1,4 +1,4 @@
-"""`mocapd send-test`: a known person to one output, without cameras or a daemon, and whether anybody listens."""
+"""Implementation of `mocapd send-test`: sends a synthetic person to one output, and reports whether it is received."""
 
 import sys
 import time
@@ -14,23 +14,23 @@ from mocapd.service.publisher import Publisher
 
 RATE_HZ = 60.0
 STATURE_M = 1.75
-NAME = "send-test"  # of the camera that there is not, and of what calibrated it
+NAME = "send-test"  # of the fictitious camera and its calibration
 CAMERA_PX = (640, 480)
-FEWEST = 3  # frames; of fewer it is not known whether they were refused
+FEWEST = 3  # frames; with fewer a refusal may go unnoticed
 NOBODY_LISTENS = 1  # exit code
 SAY_EVERY_NS = NS_PER_S
 
 
 def send_test(sink: Sink, instance: str, duration_s: float) -> int:
-    """Send for so long, saying each second how it goes; the exit code. Raises what opening the sink raises."""
+    """Sends for `duration_s` [s], with a report each second; returns the exit code. Raises errors of opening the sink."""
     shape = mean_shape(STATURE_M)
     publisher = Publisher([sink], instance)
     with closing(sink):
         sink.open()
         print("a person waves its left hand, and steps to its left and back", file=sys.stderr)
-        # some receivers leave the avatar as it is while a sender says that it is not calibrated
+        # some receivers freeze the avatar while a sender reports no calibration
         rig = nominal_rig(NAME, CAMERA_PX)
-        publisher.tell(calibration_info(rig, instance=instance, source=NAME))
+        publisher.publish_state(calibration_info(rig, instance=instance, source=NAME))
         publisher.begin(waving_person(shape, 0, 0).skeleton, STATURE_M)
         frames, said, halfway = 0, 0, None
         began_ns, lasts_ns = monotonic_ns(), nanoseconds(duration_s)
@@ -50,8 +50,7 @@ def send_test(sink: Sink, instance: str, duration_s: float) -> int:
 
 
 def is_heard(status: SinkStatus, halfway: SinkStatus | None) -> bool:
-    """Whether somebody listens at the end, as far as it can be known: on other machines, whether anybody has refused
-    since halfway."""
+    """True if a receiver listens at the end; for other machines, if none has refused since halfway."""
     if status.listeners < 0:
         return status.sent > 0 and (halfway is None or status.refused == halfway.refused)
     return status.listeners > 0

@@ -1,4 +1,4 @@
-"""The one live line of a running daemon."""
+"""The live status line of a running daemon."""
 
 import math
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from mocapd.tracking.effort import Effort
 
 
 def status_text(snapshot: Snapshot) -> str:
-    """Rate, latency, tracker and its state, each camera's rate, and who listens, in one line."""
+    """One line: rate, latency, tracker and its state, each camera's rate, and the outputs' listeners."""
     m = snapshot.metrics
     parts = [f"{m.rate_hz:4.1f} Hz"]
     if not math.isnan(m.latency_ms.median):
@@ -33,7 +33,7 @@ def status_text(snapshot: Snapshot) -> str:
 
 
 def _camera(status: CaptureStatus) -> str:
-    """Its rate while it is live and sends, else what is wrong."""
+    """The rate of a live camera, else its trouble."""
     if status.is_silent:
         return f"{status.camera} silent {status.silent_s:.0f} s"
     if status.state is CaptureState.LIVE:
@@ -47,7 +47,7 @@ def _listeners(status: SinkStatus) -> str:
 
 
 class StatusLine:
-    """On a terminal a line on stderr that is overwritten; elsewhere nothing: what changes is logged."""
+    """A line on stderr that is overwritten; without a terminal nothing, as the log has the changes."""
 
     def __init__(self) -> None:
         self._console = Console(stderr=True)
@@ -64,11 +64,11 @@ class StatusLine:
             self._live.stop()
 
     def show(self, snapshot: Snapshot, remark: str = "") -> None:
-        """Call it as often as the line shall change; `remark` comes first."""
+        """Updates the line; `remark` is its prefix."""
         self.say(lambda: f"{remark} | {status_text(snapshot)}" if remark else status_text(snapshot))
 
     def say(self, text: Callable[[], str]) -> None:
-        """Any other line, which is asked for when it is shown."""
+        """Shows another line, evaluated only if it is shown."""
         if self._live is not None:
             line = Text(text(), no_wrap=True, overflow="ellipsis")
             self._live.update(line, refresh=True)

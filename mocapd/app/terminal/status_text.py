@@ -1,4 +1,4 @@
-"""How a running daemon fares, in words."""
+"""The status of a running daemon as text."""
 
 import time
 from collections.abc import Iterable
@@ -18,7 +18,7 @@ _DAY_S = 86400.0
 
 
 def status_lines(report: StatusReport, now_unix_s: float | None = None) -> list[str]:
-    """A line for each thing; now_unix_s: for ages, the present when None."""
+    """One line per subject; now_unix_s: reference of ages, the present when None."""
     now_unix_s = time.time() if now_unix_s is None else now_unix_s
     rows = [
         (
@@ -30,8 +30,8 @@ def status_lines(report: StatusReport, now_unix_s: float | None = None) -> list[
         ("rate", _rate(report)),
         *((("effort", effort),) if (effort := effort_text(report.effort)) else ()),
         ("calibration", _calibration(report, now_unix_s)),
-        *((f"camera {one.id}", _camera(one)) for one in report.cameras),
-        *((f"output {one.name}", _output(one)) for one in report.outputs),
+        *((f"camera {camera.id}", _camera(camera)) for camera in report.cameras),
+        *((f"output {output.name}", _output(output)) for output in report.outputs),
         ("last trouble", _trouble(report, now_unix_s)),
     ]
     width = max(len(name) for name, _ in rows)
@@ -50,7 +50,7 @@ def duration(span_s: float) -> str:
 
 
 def _state(report: StatusReport) -> str:
-    """Somebody who is not taken for a person is in view."""
+    """The state, with its reason where one is given."""
     if report.state == "nobody" and report.lost_reason:
         return f"nobody is tracked: {report.lost_reason}"
     if report.state == "slow" and report.slowness:
@@ -68,12 +68,12 @@ def _rate(report: StatusReport) -> str:
 
 
 def _calibration(report: StatusReport, now_unix_s: float) -> str:
-    found = report.calibration
-    if found is None:
+    calibration = report.calibration
+    if calibration is None:
         return "none"
-    if found.made_unix_s is None:
-        return found.source
-    return f"{_ago(now_unix_s - found.made_unix_s)}, {found.source}"
+    if calibration.made_unix_s is None:
+        return calibration.source
+    return f"{_ago(now_unix_s - calibration.made_unix_s)}, {calibration.source}"
 
 
 def _ago(span_s: float) -> str:
@@ -83,21 +83,21 @@ def _ago(span_s: float) -> str:
     return f"{days} day{'s' if days > 1 else ''} old"
 
 
-def _camera(one: CameraStatusReport) -> str:
-    parts = [f"{one.state} {one.rate_hz:.1f} Hz" if one.state == "live" else one.state]
-    parts += [one.detail] if one.detail else []
-    parts += ["bumped: calibrate the room again"] if one.mounting == "bumped" else []
-    parts += ["shows what another camera should"] if one.mounting == "swapped" else []
-    parts += _counted(("lost frames", one.lost_frames), ("times reopened", one.reopened))
+def _camera(camera: CameraStatusReport) -> str:
+    parts = [f"live {camera.rate_hz:.1f} Hz" if camera.state == "live" else camera.state]
+    parts += [camera.detail] if camera.detail else []
+    parts += ["bumped: calibrate the room again"] if camera.mounting == "bumped" else []
+    parts += ["shows what another camera should"] if camera.mounting == "swapped" else []
+    parts += _counts(("lost frames", camera.lost_frames), ("times reopened", camera.reopened))
     return ", ".join(parts)
 
 
-def _output(one: OutputReport) -> str:
-    listeners = "" if one.listeners < 0 else f"{one.listeners} listening, "
-    return f"{listeners}{one.sent} sent, {one.not_sent} not: {one.detail}"
+def _output(output: OutputReport) -> str:
+    listeners = "" if output.listeners < 0 else f"{output.listeners} listening, "
+    return f"{listeners}{output.sent} sent, {output.not_sent} not: {output.detail}"
 
 
-def _counted(*counts: tuple[str, int]) -> Iterable[str]:
+def _counts(*counts: tuple[str, int]) -> Iterable[str]:
     return [f"{count} {what}" for what, count in counts if count]
 
 

@@ -1,4 +1,4 @@
-"""`mocapd watch --all` and `status --all`: every daemon on the bus in one line, once a second or once."""
+"""Implementation of `mocapd watch --all` and `status --all`: one line per daemon on the bus, each second or once."""
 
 import itertools
 import json
@@ -19,12 +19,12 @@ from mocapd.outputs.messages import CameraStatus
 from mocapd.outputs.zenoh.zenoh_instances import Instances, InstanceState, list_instances
 
 EVERY_S = 1.0
-SILENT_S = 5.0  # of a daemon that lives and says nothing: it says something each second
+SILENT_S = 5.0  # a living daemon that sends nothing so long is reported; it should send each second
 
 
 def watch_all(link: Link, as_json: bool, count: int) -> None:
-    """Print rounds of lines, `count` of them, 0: without end. Raises UnavailableError when there is no bus, or
-    nobody on it in time."""
+    """Prints `count` rounds of lines, 0: without end. Raises UnavailableError without a bus, or without a daemon within
+    the timeout."""
     instances = Instances()
     with ExitStack() as opened:
         session = opened.enter_context(connect(link))
@@ -35,9 +35,9 @@ def watch_all(link: Link, as_json: bool, count: int) -> None:
             live = opened.enter_context(Live(console=console, auto_refresh=False))
         for done in itertools.count(1):
             states = instances.states()
-            lines = [json.dumps(as_dict(one)) if as_json else as_text(one) for one in states]
+            lines = [json.dumps(as_dict(s)) if as_json else as_text(s) for s in states]
             if live is not None:
-                summary = f"{sum(one.alive for one in states)} daemons at {link.endpoint}"
+                summary = f"{sum(state.alive for state in states)} daemons at {link.endpoint}"
                 live.update(Text("\n".join([*lines, summary]), no_wrap=True), refresh=True)
             else:
                 sys.stdout.write("".join(f"{line}\n" for line in lines))
@@ -48,22 +48,22 @@ def watch_all(link: Link, as_json: bool, count: int) -> None:
 
 
 def on_the_bus(link: Link) -> tuple[InstanceState, ...]:
-    """Every daemon as it answers now. Raises UnavailableError when there is no bus, or nobody on it in time."""
+    """The state of every daemon. Raises UnavailableError without a bus, or without a daemon within the timeout."""
     with connect(link) as session:
         return list_instances(session)
 
 
 def is_able(one: InstanceState) -> bool:
-    """Whether it tracks or could, as soon as somebody comes: a camera of it delivers."""
+    """True if the daemon can track: one of its cameras delivers."""
     return not one.trouble and any(camera.state == "live" for camera in one.cameras.values())
 
 
 def as_text(one: InstanceState) -> str:
-    """One line, whatever it says of itself: rate, who tracks and how, latency, cameras, and what is wrong."""
-    return one_line(_as_told(one))
+    """One safe line: rate, tracker and its state, latency, cameras, and trouble."""
+    return one_line(_raw_text(one))
 
 
-def _as_told(one: InstanceState) -> str:
+def _raw_text(one: InstanceState) -> str:
     name = f"{one.name:<16}"
     if one.trouble:
         return f"{name} is not understood: {one.trouble}"
@@ -92,7 +92,7 @@ def _as_told(one: InstanceState) -> str:
 
 
 def as_dict(one: InstanceState) -> dict[str, Any]:
-    """For JSON: the messages as they came, and whether it lives."""
+    """For JSON: the received messages, and whether the daemon lives."""
     return {
         "instance": one.name,
         "alive": one.alive,
@@ -104,7 +104,7 @@ def as_dict(one: InstanceState) -> dict[str, Any]:
 
 
 def _why(camera: CameraStatus) -> str:
-    """Without the mend, which is for who is there."""
+    """The trouble without its fix, which helps only on that machine."""
     what = camera.detail.partition(" -- ")[0]
     return f": {what}" if what else ""
 

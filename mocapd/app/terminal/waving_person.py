@@ -1,4 +1,4 @@
-"""A person whose every side is told apart: waves the left hand, and steps to its left and back. For trying an output."""
+"""A test person for outputs with distinguishable sides: waves the left hand, steps to its left and back."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ _LIFT_DEG = 35.0  # of the thigh; the shin twice as far the other way
 
 
 def waving_person(shape: BodyShape, since_start_ns: int, now_ns: int) -> BodySample:
-    """The person so long after the start, as if it was seen now."""
+    """The person's body at a time after the start, stamped with `now_ns`."""
     skeleton = skeleton_of(shape)
     canned = canned_pose(skeleton, LOOP, since_start_ns)
     local_xyzw = local_from_global(skeleton, canned.quats_xyzw)
@@ -27,15 +27,15 @@ def waving_person(shape: BodyShape, since_start_ns: int, now_ns: int) -> BodySam
         local_xyzw[INDEX[f"{side}LowerLeg"]] = _about_x(2.0 * _LIFT_DEG * share)
     pose = Pose(canned.root_m, global_from_local(skeleton, local_xyzw))
     joints_m = joint_positions(skeleton, pose)
-    known = np.ones(len(skeleton.names))
+    confidence = np.ones(len(skeleton.names))
     body = BodyState(
         now_ns,
         Tracking.LIVE,
         "canned",
         pose,
         joints_m,
-        known,
-        uncertainty_m=UNCERTAINTY_M * known,
+        confidence,
+        uncertainty_m=UNCERTAINTY_M * confidence,
     )
     return BodySample(Track(body, shape, quality=1.0), skeleton, FrameSet(now_ns, {}))
 

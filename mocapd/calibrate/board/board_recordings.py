@@ -12,8 +12,8 @@ import cv2
 import numpy as np
 
 from mocapd.boundary.files import read_file
+from mocapd.boundary.image_decoding import MOST_FILE_BYTES, decode_picture
 from mocapd.boundary.listing import shown_in
-from mocapd.boundary.pictures import MOST_FILE_BYTES, decode_picture
 from mocapd.capture.file import FileSource, probe_video
 from mocapd.capture.video_times import video_times
 from mocapd.errors import EndOfStream, InputError, MalformedError

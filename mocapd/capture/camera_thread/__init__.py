@@ -1,1 +1,1 @@
-"""The capture thread of one camera: its state and counts, faults of its pictures, and how it opens a lost camera again."""
+"""The capture thread of one camera: state and counters, detection of bad pictures, reopening of a lost camera."""

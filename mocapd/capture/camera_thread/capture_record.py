@@ -1,4 +1,4 @@
-"""How one camera fares, kept by its capture thread, read by any: its state, its counts, and what the log is told."""
+"""State, counters and log lines of one camera. Its capture thread writes, any thread reads."""
 
 import logging
 import threading
@@ -14,28 +14,28 @@ _LOG = logging.getLogger(__name__)
 
 
 class CaptureRecord:
-    """Of one camera from start to stop. Changes of state are logged, each once.
+    """The record of one camera from start to stop. Logs each change of state once.
 
-    A plug that is loose must not fill the log for months: after ten losses within ten minutes further ones are
-    told as debug, until that is over.
+    Rate limit: a loose plug must not fill the log for months. After ten losses within ten minutes further losses
+    are logged as debug until the rate falls.
     """
 
     def __init__(self, camera: str) -> None:
         self._camera = camera
-        self._losses = RestartBudget(most=10, within_s=600.0)  # that are told
+        self._losses = RestartBudget(most=10, within_s=600.0)  # that are logged
         self._level = logging.WARNING
         self._lock = threading.Lock()  # guards what follows; held for moments only
         self._state = CaptureState.OPENING
         self._reason = ""
         self._notice = ""
         self._frames = 0
-        self._openings = 0  # that delivered
+        self._openings = 0  # that delivered a frame
         self._last_frame_ns: int | None = None
-        self._came_ns = 0  # the newest frame, by the clock
+        self._came_ns = 0  # arrival of the newest frame
         self._rate = RateMeter()
 
     def status(self, torn: int) -> CaptureStatus:
-        """A snapshot, at any time from any thread. torn: by the source's own count."""
+        """A snapshot; thread-safe. torn: the source's count of damaged frames."""
         with self._lock:
             live = self._state is CaptureState.LIVE
             silent_ns = monotonic_ns() - self._came_ns if live else 0
@@ -54,16 +54,16 @@ class CaptureRecord:
 
     @property
     def frames(self) -> int:
-        """How many came so far."""
+        """The number of frames so far."""
         return self._frames
 
     @property
     def rate(self) -> RateMeter:
-        """Of the frames since it was opened; for the capture thread alone."""
+        """Rate of the frames since the last opening; for the capture thread only."""
         return self._rate
 
-    def opened(self, place: str) -> None:
-        """The first frame of an opening is here: one that opens and sends nothing is still lost."""
+    def mark_live(self, place: str) -> None:
+        """Call at the first frame after an opening: a camera that opens but sends nothing is still lost."""
         with self._lock:
             self._openings += 1
             self._rate.clear()
@@ -73,16 +73,16 @@ class CaptureRecord:
             level = logging.INFO if self._level == logging.WARNING else logging.DEBUG
             _LOG.log(level, "%s: is back%s", self._camera, f", {place}" if place else "")
 
-    def came(self, frame: Frame) -> None:
-        """A frame."""
+    def count_frame(self, frame: Frame) -> None:
+        """Counts a frame and updates the rate."""
         now_ns = monotonic_ns()
         with self._lock:
             self._frames += 1
             self._last_frame_ns, self._came_ns = frame.t_ns, now_ns
             self._rate.add(frame.t_ns)
 
-    def noticed(self, notice: str, place: str) -> None:
-        """What is wrong with its pictures; empty: nothing any more."""
+    def set_notice(self, notice: str, place: str) -> None:
+        """Sets and logs the trouble with the pictures; empty when it is over."""
         with self._lock:
             self._notice = notice or place
         if notice:
@@ -90,11 +90,11 @@ class CaptureRecord:
         else:
             _LOG.info("%s: its pictures are as they should be again", self._camera)
 
-    def lost(self, error: MocapdError) -> bool:
-        """It is lost, for this reason; whether it was not before.
+    def mark_lost(self, error: MocapdError) -> bool:
+        """Changes the state to lost; True if it was another state before.
 
-        Told once for each loss: the attempts that follow fail for reasons of their own. But that it is back, and
-        does not fit or may be another one, is news.
+        Logs each loss once: later attempts to open fail for reasons of their own. A camera that is back but has
+        another size or an ambiguous identity is logged again.
         """
         was, reason = self._set(CaptureState.LOST, str(error))
         is_new = was is not CaptureState.LOST
@@ -106,8 +106,8 @@ class CaptureRecord:
         _LOG.log(self._level if news else logging.DEBUG, "%s: %s: %s", self._camera, what, error)
         return is_new
 
-    def ended(self, reason: str) -> None:
-        """Nothing more will come."""
+    def mark_ended(self, reason: str) -> None:
+        """Changes the state to ended: no more frames will come."""
         self._set(CaptureState.ENDED, reason)
 
     def _count_loss(self) -> None:
@@ -115,13 +115,13 @@ class CaptureRecord:
         self._level = logging.DEBUG if is_many else logging.WARNING
         if is_many and before == logging.WARNING:
             _LOG.warning(
-                "%s: was lost %d times within %.0f minutes, and further losses are not told until that is over --"
+                "%s: was lost %d times within %.0f minutes, and further losses are not logged until that is over --"
                 " check its plug and its cable",
                 *(self._camera, self._losses.most + 1, self._losses.within_s / 60.0),
             )
 
     def _set(self, state: CaptureState, reason: str) -> tuple[CaptureState, str]:
-        """Change state and reason; returns those before."""
+        """Sets state and reason; returns the previous ones."""
         with self._lock:
             before = self._state, self._reason
             self._state, self._reason = state, reason

@@ -1,13 +1,13 @@
-"""How one camera's capture thread fares."""
+"""The status of one camera's capture thread."""
 
 from dataclasses import dataclass
 from enum import StrEnum
 
-SILENT_S = 1.0  # from a live camera: so long without a frame is told [s]
+SILENT_S = 1.0  # a live camera without a frame for so long is reported [s]
 
 
 class CaptureState(StrEnum):
-    """`lost` is a state, not an error: the camera is sought again until it is back."""
+    """`lost` is a state, not an error: the thread tries to reopen the camera until it is back."""
 
     OPENING = "opening"
     LIVE = "live"
@@ -15,8 +15,8 @@ class CaptureState(StrEnum):
     ENDED = "ended"
 
     @property
-    def told(self) -> str:
-        """The word for it in messages to others."""
+    def wire_name(self) -> str:
+        """The state's name in messages on the wire."""
         return "starting" if self is CaptureState.OPENING else self.value
 
 
@@ -24,11 +24,10 @@ class CaptureState(StrEnum):
 class CaptureStatus:
     """A snapshot of one capture thread.
 
-    `reason`: why it is lost or ended, and the mend; empty while live. `notice`: what is wrong with its
-    pictures or its place while it is live. `reopens`: how often it came
-    back after a loss. `fps_hz` is measured from the frames' own times over the last 2 s; it falls by
-    the clock while a read blocks. `last_frame_ns`: the newest frame's own time, None before the first.
-    `silent_s`: since the newest frame came [s]; 0 unless live.
+    `reason`: why it is lost or ended, and the fix; empty while live. `notice`: trouble with its pictures or its USB
+    port while it is live. `reopens`: number of recoveries from a loss. `fps_hz`: rate by the frames' own times over
+    the last 2 s; it falls with the clock while a read blocks. `last_frame_ns`: time of the newest frame, None
+    before the first. `silent_s`: time since the newest frame arrived [s]; 0 unless live.
     """
 
     camera: str
@@ -44,10 +43,10 @@ class CaptureStatus:
 
     @property
     def is_silent(self) -> bool:
-        """Whether it counts as live and yet sends nothing: its driver does not come back."""
+        """True if the camera is live but sends no frames: a call of its driver blocks."""
         return self.state is CaptureState.LIVE and self.silent_s >= SILENT_S
 
     @property
     def trouble(self) -> str:
-        """What is wrong with it, for people; empty when nothing is."""
+        """The trouble in words, for users; empty without trouble."""
         return f"silent for {self.silent_s:.0f} s" if self.is_silent else self.reason or self.notice

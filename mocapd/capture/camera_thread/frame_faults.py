@@ -1,4 +1,4 @@
-"""What is wrong with the pictures of a camera that delivers: frozen, black, damaged, of another size."""
+"""Detects bad pictures of a live camera: frozen, black, damaged, or of another size."""
 
 from collections import deque
 
@@ -8,9 +8,9 @@ from mocapd.clock import NS_PER_S
 from mocapd.types import Frame
 
 FROZEN_NS = 2 * NS_PER_S  # the sensor's noise alone makes every picture another one
-# A video's encoder may leave out the noise, and send nothing but "as before" of an empty room until its next key picture.
+# A video encoder may drop the noise: for an empty room it sends unchanged pictures until the next key frame.
 FROZEN_VIDEO_NS = 60 * NS_PER_S
-_LEAST_EQUAL = 5  # pictures, of a camera of a low rate
+_LEAST_EQUAL = 5  # pictures; decides at low frame rates
 _LOOK_NS = NS_PER_S // 2
 _BLACK_NS = 2 * NS_PER_S
 _BLACK = 16  # of 255: what a covered lens sends, with its noise
@@ -20,19 +20,19 @@ _TORN_SHARE = 0.05  # one in twenty damaged is a cable, one in ten thousand is t
 
 
 class FrameFaults:
-    """Of one camera since it was opened; shown every frame, in order. For one thread.
+    """Detector for one camera; takes every frame in order since its opening. Not thread-safe.
 
-    `notice`: what people should know, empty when all is well; `frozen`: whether it sends the same picture over and
-    over, which no sensor does: what it shows is of the past, and it should be opened again.
+    `notice`: the trouble in words for users, empty without trouble. `frozen`: True if the camera repeats one picture.
+    No sensor does that, so the camera must be reopened.
     """
 
     def __init__(self, size_px: tuple[int, int] | None = None) -> None:
-        """size_px: width and height that its calibration is for; None: any."""
+        """size_px: (width, height) of its calibration; None accepts any size."""
         self._size_px = size_px
         self.clear()
 
     def clear(self) -> None:
-        """It was opened again."""
+        """Resets the detector after a reopening."""
         self.notice = ""
         self.frozen = False
         self._before: Frame | None = None
@@ -45,8 +45,8 @@ class FrameFaults:
         self._frames = 0
 
     def add(self, frame: Frame, torn: int, of_source: str = "") -> bool:
-        """A frame, how many damaged ones its source has left out so far, and the source's own notice; whether the notice
-        changed."""
+        """Takes a frame; returns True if `notice` changed. torn: frames that the source dropped as damaged so far;
+        of_source: the source's own notice."""
         self._frames += 1
         self._compare(frame)
         if self._looked_ns and frame.t_ns - self._looked_ns < _LOOK_NS:
@@ -68,7 +68,7 @@ class FrameFaults:
         self._equal += 1
         lasted_ns = frame.t_ns - self._equal_since_ns
         limit_ns = FROZEN_NS if frame.encoded is not None else FROZEN_VIDEO_NS
-        # a covered lens may be black to the last bit, and is none the worse for it
+        # a covered lens may send identical black pictures: that is not frozen
         self.frozen = self._equal >= _LEAST_EQUAL and lasted_ns >= limit_ns and not _is_black(frame)
 
     def _look_for_light(self, frame: Frame) -> None:
@@ -103,5 +103,5 @@ def _is_same(a: Frame, b: Frame) -> bool:
     few = (
         slice(None, None, _EVERY_PX),
         slice(None, None, _EVERY_PX),
-    )  # tell most apart, and cost nothing
+    )  # a sparse sample: decides most cases at no cost
     return np.array_equal(a.pixels[few], b.pixels[few]) and np.array_equal(a.pixels, b.pixels)

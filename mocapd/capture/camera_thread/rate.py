@@ -1,4 +1,4 @@
-"""The measured rate of a stream of frames, over a sliding window of its own time stamps."""
+"""Frame rate over a sliding window of the frames' time stamps."""
 
 from collections import deque
 
@@ -15,25 +15,25 @@ class RateMeter:
         self._times_ns: deque[int] = deque(maxlen=_MOST)
 
     def clear(self) -> None:
-        """Forget the past: after a reopening the gap is no low rate."""
+        """Empties the window: the gap before a reopening must not count as a low rate."""
         self._times_ns.clear()
 
     def add(self, t_ns: int) -> None:
-        """A frame of time `t_ns` [ns] came."""
+        """Adds a frame with time `t_ns` [ns]."""
         self._times_ns.append(t_ns)
         while t_ns - self._times_ns[0] > self._window_ns:
             self._times_ns.popleft()
 
     @property
     def full(self) -> bool:
-        """Whether the window is filled far enough (three quarters) for the rate to be judged."""
+        """True once the window is three quarters full: the rate is then reliable."""
         return self._span_ns() >= 0.75 * self._window_ns
 
     def rate_hz(self, silent_ns: int = 0) -> float:
         """The mean rate in the window [Hz]; 0 before the second frame.
 
-        silent_ns: since the last frame came, by the clock. What exceeds the usual interval lowers the
-        rate; after a whole window of silence it is 0.
+        silent_ns: time since the last frame arrived. The part beyond the mean interval lowers the rate; after a
+        whole window of silence the rate is 0.
         """
         span_ns, intervals = self._span_ns(), len(self._times_ns) - 1
         if span_ns <= 0 or silent_ns > self._window_ns:

@@ -1,4 +1,4 @@
-"""When a lost camera is opened again: after a pause that grows, and only so many times before it is left out."""
+"""Policy of reopening a lost camera: exponential backoff, and quarantine after repeated failures."""
 
 from collections import deque
 from dataclasses import dataclass, field
@@ -21,10 +21,10 @@ class BackOff:
 
 @dataclass(slots=True)
 class RestartBudget:
-    """How often a camera that delivers may fail again before it is left alone. For one thread.
+    """Limits how often a camera may fail after it delivered frames. Not thread-safe.
 
-    Opening it helps nothing then, takes its bus and fills the log: it rests for `rest_s`, or until somebody
-    plugs it in anew. That a camera is not there at all costs nothing.
+    Beyond the limit reopening only loads the USB bus and the log: the camera is quarantined for `rest_s` or until
+    it is plugged in again. An absent camera does not use the budget.
     """
 
     most: int = 6
@@ -33,14 +33,14 @@ class RestartBudget:
     _spent_ns: deque[int] = field(default_factory=deque)
 
     def spend(self, now_ns: int) -> bool:
-        """It failed again after it had delivered; whether the budget is spent by that."""
+        """Counts a failure of a camera that had delivered; True if the budget is exhausted."""
         self._spent_ns.append(now_ns)
         while now_ns - self._spent_ns[0] > nanoseconds(self.within_s):
             self._spent_ns.popleft()
         return len(self._spent_ns) > self.most
 
-    def left_out(self, error: MocapdError, has_plug: bool) -> CameraLost:
-        """What is told of it then. error: its last; has_plug: whether it may be plugged in anew."""
+    def quarantine_error(self, error: MocapdError, has_plug: bool) -> CameraLost:
+        """The error of a quarantined camera. error: its last one; has_plug: whether replugging may help."""
         return CameraLost(
             f"left out for {self.rest_s:.0f} s, as it failed {self.most + 1} times within {self.within_s:.0f} s: "
             f"{error.what}",
@@ -50,5 +50,5 @@ class RestartBudget:
         )
 
     def renew(self) -> None:
-        """It was plugged in anew, or has rested."""
+        """Restores the budget, after a replug."""
         self._spent_ns.clear()

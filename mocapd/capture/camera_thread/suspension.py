@@ -1,4 +1,4 @@
-"""That the machine has slept: cameras lose their power meanwhile, and their controls with it."""
+"""Detects suspension of the machine: cameras lose their power then, and with it their controls."""
 
 from collections.abc import Callable
 
@@ -8,15 +8,15 @@ _LEAST_NS = NS_PER_S // 2  # the two clocks are read one after the other
 
 
 class SuspensionWatch:
-    """Asked now and then whether there was a suspension since. For one thread."""
+    """Polled for suspensions. Not thread-safe."""
 
     def __init__(self, clock: Callable[[], int] = suspended_ns) -> None:
-        """clock: how long the machine has slept in all [ns]."""
+        """clock: total time that the machine was suspended [ns]."""
         self._clock = clock
         self._before_ns = clock()
 
     def slept_s(self) -> float:
-        """How long it slept since this was asked last [s]; 0 when it did not."""
+        """Time suspended since the last call [s]; 0 without a suspension."""
         now_ns = self._clock()
         slept_ns = now_ns - self._before_ns
         if slept_ns < _LEAST_NS:

@@ -64,7 +64,7 @@ class FolderOrigin:
     def source(self, address: str, request: SourceRequest) -> Source:
         """See Origin. The only camera is meant when an address names none."""
         camera = "" if is_folder(user_path(address)) else split_address(address)[1]
-        names = ", ".join(one.name for one in self.folder.cameras)
+        names = ", ".join(c.name for c in self.folder.cameras)
         place = str(self.folder.path)
         if not camera and len(self.folder.cameras) > 1:
             raise ConfigError(
@@ -72,11 +72,11 @@ class FolderOrigin:
                 place,
                 f"say which: {place}#NAME with one of {names}",
             )
-        for one in self.folder.cameras:
-            if camera in ("", one.name):
-                name = request.name or one.name
-                check_size(str(one.video), name, one.size_px, request.size_px)
-                return folder_source(one, request.pace, request.name)
+        for recorded in self.folder.cameras:
+            if camera in ("", recorded.name):
+                name = request.name or recorded.name
+                check_size(str(recorded.video), name, recorded.size_px, request.size_px)
+                return folder_source(recorded, request.pace, request.name)
         raise ConfigError(f"there is no camera {camera!r}", place, f"it has {names}")
 
 

@@ -1,4 +1,4 @@
-"""What a kind of source says of itself: the record that the table `source_kinds` is made of."""
+"""The record of one kind of source; `source_kinds` is a table of them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,14 +11,12 @@ from mocapd.capture.webcam.identity import WebcamIdentity
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SourceKind:
-    """One way to write where a camera is read from: its address.
+    """One form of a camera's address.
 
-    form: how it is written, for people. matches(address): whether it is written so. open(address, request):
-    its source, checked but not opened yet; raises ConfigError or InputError. is_path: a relative address is
-    meant from the file that holds it. is_settable: it delivers the size that it is asked for. identity: of
-    the webcam that an address names; raises ConfigError. origin: where several such cameras are of. Whether
-    its frames are of the past is said by the source itself, and a password in an address is hidden by
-    `boundary.urls`, whatever the kind.
+    form: its syntax, for users. matches(address): whether an address has this form. open(address, request): the
+    source, checked but not opened; raises ConfigError or InputError. is_path: a relative address is relative to the
+    file that holds it. is_settable: the camera can deliver a requested size. identity: of the webcam at an address;
+    raises ConfigError. origin: the recording or scenario that several cameras share.
     """
 
     form: str

@@ -1,4 +1,4 @@
-"""The table of source kinds, and what is asked of it by everybody who has a camera's address."""
+"""The table of source kinds, and look-ups by a camera's address."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -20,25 +20,24 @@ from mocapd.capture.webcam.webcam_kind import NODE, WEBCAM
 from mocapd.errors import ConfigError, InputError
 
 SOURCE_KINDS: tuple[SourceKind, ...] = (WEBCAM, NODE, URL, REMOTE, SIM, RECORDING, FILE, FOLDER)
-"""The first that matches counts; paths come last, as any text can be one."""
+"""The first match wins; paths come last, as any text can be a path."""
 
 SOURCE_FORMS = ", ".join(kind.form for kind in SOURCE_KINDS[:-1]) + f" or {SOURCE_KINDS[-1].form}"
-"""How a camera may be written, for people."""
+"""The forms of an address, for users."""
 
 
 def kind_of(address: str) -> SourceKind | None:
-    """The kind of a camera, or of an origin; None for what is neither, such as a file that is gone.
+    """The kind of a camera's or origin's address; None for anything else, such as a missing file.
 
-    Raises ConfigError for what can be no path.
+    Raises ConfigError for an invalid path.
     """
     return next((kind for kind in SOURCE_KINDS if kind.matches(address)), None)
 
 
 def open_source(address: str, request: SourceRequest | None = None) -> Source:
-    """The source that an address means; checked, but not opened yet.
+    """The source of an address; checked but not opened.
 
-    A recording that is missing or damaged is told here, at the start, and not sought for ever by
-    its thread. Raises ConfigError or InputError.
+    Raises ConfigError or InputError, also for a missing or damaged recording, which no retry can mend.
     """
     request = request if request is not None else SourceRequest()
     kind = kind_of(address)
@@ -56,32 +55,31 @@ def identity_of(address: str) -> WebcamIdentity | None:
 
 
 def identities_of(addresses: Iterable[tuple[str, str]]) -> dict[str, WebcamIdentity]:
-    """By id the webcams among cameras given as id and address. Raises ConfigError."""
-    found = {name: identity_of(address) for name, address in addresses}
-    return {name: identity for name, identity in found.items() if identity is not None}
+    """The webcams' identities by id, of cameras given as (id, address). Raises ConfigError."""
+    identities = {name: identity_of(address) for name, address in addresses}
+    return {name: identity for name, identity in identities.items() if identity is not None}
 
 
 def is_simulated(address: str) -> bool:
-    """Whether nothing of it is real."""
+    """True for a simulated camera."""
     kind = kind_of(address)
     return kind is not None and kind.is_simulated
 
 
 def is_settable(address: str) -> bool:
-    """Whether it delivers the size that it is asked for."""
+    """True if the camera can deliver a requested size."""
     kind = kind_of(address)
     return kind is not None and kind.is_settable
 
 
 def origin_of(address: str) -> str:
-    """The origin that a camera is of; empty for a camera by itself."""
+    """The origin of a camera; empty for a camera without one."""
     kind = kind_of(address)
     return split_address(address)[0] if kind is not None and kind.origin is not None else ""
 
 
 def common_origin(addresses: Iterable[str]) -> str:
-    """The origin that all these cameras are of; empty where there is none. Raises ConfigError for simulated cameras
-    among others."""
+    """The origin that all cameras share; empty without one. Raises ConfigError where only some are simulated."""
     cameras = tuple(addresses)
     origins = {origin_of(address) for address in cameras}
     if any(map(is_simulated, cameras)) and (len(origins) > 1 or origins == {""}):
@@ -101,15 +99,15 @@ def cameras_of_origin(origin: str) -> tuple[str, ...]:
 def open_origin(
     origin: str, cache_dir: Path, progress: Progress, is_beginning: bool = False
 ) -> Origin:
-    """Everything that it knows; `is_beginning`: what can be had soonest is enough. Raises InputError, ConfigError or
+    """Opens an origin; `is_beginning`: the part that is ready soonest suffices. Raises InputError, ConfigError or
     CannotCreateError."""
     kind = _origin_kind(origin)
     opened = kind.open_beginning if is_beginning and kind.open_beginning is not None else kind.open
     return opened(origin, cache_dir, progress)
 
 
-def address_beside(folder: Path, address: str) -> str:
-    """An address as it is meant in a file of this folder. Raises ConfigError."""
+def address_in_folder(folder: Path, address: str) -> str:
+    """Resolves an address that a file in this folder holds. Raises ConfigError."""
     kind = kind_of(address)
     if kind is not None and not kind.is_path:
         return address

@@ -1,4 +1,4 @@
-"""A recording with pictures as the origin of its cameras: rig, wearer and colours are inside of it."""
+"""A recording with pictures as the origin of its cameras; it contains rig, wearer and colours."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, check_size
 from mocapd.capture.frame_groups import as_set
 from mocapd.capture.origin import split_address
 from mocapd.capture.recording.mcap_source import McapSource, is_picture, pictures
-from mocapd.capture.recording.recorded_known import RecordedKnown, known_of
 from mocapd.capture.recording.recorded_picture import camera_of
+from mocapd.capture.recording.recording_metadata import RecordingMetadata, metadata_of
 from mocapd.capture.source_request import SourceRequest
 from mocapd.clock import NS_PER_S
 from mocapd.errors import ConfigError, InputError
@@ -23,10 +23,10 @@ _RECORD = "record with `mocapd record --pictures`, from a daemon whose cameras a
 
 @dataclass(frozen=True, slots=True, eq=False)
 class McapOrigin:
-    """See Origin. `start_ns`: the time of the first picture, Unix time; counts: of each camera its pictures."""
+    """See Origin. `start_ns`: Unix time of the first picture; counts: number of pictures by camera."""
 
     path: Path
-    known: RecordedKnown
+    metadata: RecordingMetadata
     rig: Rig
     start_ns: int
     fps_hz: float
@@ -40,7 +40,7 @@ class McapOrigin:
     @property
     def stature_m(self) -> float | None:
         """See Origin."""
-        return self.known.stature_m
+        return self.metadata.stature_m
 
     @property
     def count(self) -> int:
@@ -49,19 +49,19 @@ class McapOrigin:
 
     def model(self) -> tuple[LabelledPicture, ...]:
         """See Origin."""
-        return self.known.model
+        return self.metadata.model
 
     def white_balance(self) -> Mapping[str, LabelledPicture]:
         """See Origin."""
-        return self.known.white_balance
+        return self.metadata.white_balance
 
     def frame_sets(self) -> Iterator[FrameSet]:
-        """See Origin. A set ends before a picture of a camera that it has, or half a frame after its first."""
+        """See Origin. A set ends before the second picture of a camera, or half a period after its first picture."""
         order = {camera.name: camera for camera in self.rig.cameras}
         longest_ns = round(0.5 * NS_PER_S / self.fps_hz)
         held: dict[str, Frame] = {}
         for frame in pictures(self.path, self.rig, self.start_ns):
-            first_ns = min((one.t_ns for one in held.values()), default=frame.t_ns)
+            first_ns = min((picture.t_ns for picture in held.values()), default=frame.t_ns)
             if held and (frame.camera in held or frame.t_ns - first_ns > longest_ns):
                 yield as_set({name: held[name] for name in order if name in held})
                 held = {}
@@ -72,7 +72,7 @@ class McapOrigin:
     def source(self, address: str, request: SourceRequest) -> Source:
         """See Origin. The only camera is meant when an address names none."""
         camera = split_address(address)[1]
-        cameras = {one.name: one for one in self.rig.cameras if one.name in self.counts}
+        cameras = {camera.name: camera for camera in self.rig.cameras if camera.name in self.counts}
         if not camera and len(cameras) == 1:
             camera = next(iter(cameras))
         if camera not in cameras:
@@ -87,7 +87,7 @@ class McapOrigin:
 
 
 def open_recording(path: Path) -> McapOrigin:
-    """Read what the file knows, and once through its pictures' times. Raises InputError or ConfigError."""
+    """Reads the metadata and the times of all pictures. Raises InputError or ConfigError."""
     file, place = McapFile(path), str(path)
     attachments: list[McapAttachment] = []
     times: dict[str, list[int]] = {}
@@ -96,21 +96,23 @@ def open_recording(path: Path) -> McapOrigin:
             attachments.append(item)
         else:
             times.setdefault(camera_of(item.topic), []).append(item.log_ns)
-    known = known_of(attachments, place)
+    metadata = metadata_of(attachments, place)
     if not times:
         raise InputError("holds no pictures of cameras", place, _RECORD)
-    if known.rig is None:
+    if metadata.rig is None:
         raise InputError("does not know where its cameras stood", place, _RECORD)
-    strangers = set(times) - set(known.rig.names)
+    strangers = set(times) - set(metadata.rig.names)
     if strangers:
         raise InputError(f"its rig has no camera {min(strangers)!r}", place, _RECORD)
-    counts = {name: len(times[name]) for name in known.rig.names if name in times}
-    return McapOrigin(path, known, known.rig, min(chain(*times.values())), _rate_hz(times), counts)
+    counts = {name: len(times[name]) for name in metadata.rig.names if name in times}
+    return McapOrigin(
+        path, metadata, metadata.rig, min(chain(*times.values())), _rate_hz(times), counts
+    )
 
 
 def _rate_hz(times: Mapping[str, list[int]]) -> float:
     """The common rate of the cameras: by the median distance of one's pictures."""
-    longest = max(times.values(), key=lambda one: len(one))  # noqa: PLW0108
+    longest = max(times.values(), key=lambda stamps: len(stamps))  # noqa: PLW0108
     steps = sorted(after - before for before, after in pairwise(sorted(longest)))
     if not steps:
         return 30.0

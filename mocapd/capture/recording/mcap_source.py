@@ -1,12 +1,12 @@
-"""One camera of a recording: the JPEGs that it delivered, decoded again, at their own times."""
+"""One camera of a recording: decodes its JPEGs at their recorded times."""
 
 import logging
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.boundary.mcap_records import McapFile, McapMessage
-from mocapd.boundary.pictures import decode_camera_picture
 from mocapd.capture.pace import Pace
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.recording.recorded_picture import IMAGE, camera_of, decode_picture_message
@@ -15,11 +15,11 @@ from mocapd.errors import CameraLost, EndOfStream, MalformedError
 from mocapd.types import Camera, Frame, Rig
 
 _log = logging.getLogger(__name__)
-_LATE_NS = NS_PER_S // 30  # live: what is later than that is skipped, as a webcam would
+_LATE_NS = NS_PER_S // 30  # live: later pictures are skipped, as a webcam would
 
 
 def is_picture(topic: str, schema: str) -> bool:
-    """Whether such a channel holds a camera's pictures."""
+    """True if a channel of this topic and schema holds a camera's pictures."""
     return schema == IMAGE and bool(camera_of(topic))
 
 
@@ -78,13 +78,13 @@ def pictures(path: Path, rig: Rig, start_ns: int) -> Iterator[Frame]:
 
 
 def _picture_messages(path: Path, camera: str) -> Iterator[McapMessage]:
-    """Of one camera, or of all of them; what was missing is logged at the end."""
+    """The picture messages of one camera, or of all when empty; logs an early end of the file."""
     file = McapFile(path)
 
-    def wanted(topic: str, schema: str) -> bool:
+    def is_wanted(topic: str, schema: str) -> bool:
         return is_picture(topic, schema) and camera in ("", camera_of(topic))
 
-    for item in file.items(wanted):
+    for item in file.items(is_wanted):
         if isinstance(item, McapMessage):
             yield item
     if file.ending:

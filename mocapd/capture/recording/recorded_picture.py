@@ -1,4 +1,4 @@
-"""A camera's picture in a recording: the JPEG that the camera delivered, as Foxglove's `CompressedImage`.
+"""A camera's picture in a recording: its JPEG in a Foxglove `CompressedImage`.
 
 Fields and types are those of foxglove/foxglove-sdk, schemas/jsonschema/CompressedImage.json; bytes are base64.
 """
@@ -46,12 +46,12 @@ class CompressedImage(msgspec.Struct, frozen=True):
 
 
 def image_topic(camera: str) -> str:
-    """Where a camera's pictures are."""
+    """The topic of a camera's pictures."""
     return f"{_PREFIX}{camera}{_SUFFIX}"
 
 
 def camera_of(topic: str) -> str:
-    """The camera whose pictures are there; empty for any other topic."""
+    """The camera of a picture topic; empty for any other topic."""
     if not (topic.startswith(_PREFIX) and topic.endswith(_SUFFIX)):
         return ""
     return topic[len(_PREFIX) : -len(_SUFFIX)]
@@ -63,5 +63,5 @@ def camera_frame(camera: str) -> str:
 
 
 def decode_picture_message(data: bytes) -> CompressedImage:
-    """A message of such a topic. Raises MalformedError."""
+    """Decodes a message of a picture topic. Raises MalformedError."""
     return decode_json(data, CompressedImage)

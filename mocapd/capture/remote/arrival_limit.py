@@ -1,14 +1,12 @@
-"""How many pictures a second of one camera node are looked at, by the time of their arrival. Pure: no clock."""
+"""Token bucket that limits the pictures per second of one camera node. Pure: the caller passes the time."""
 
 from mocapd.clock import NS_PER_S
 
-_BURST = (
-    3.0  # pictures that may come together: networks hold some up, and then deliver them at once
-)
+_BURST = 3.0  # bucket size [pictures]: networks delay some and then deliver them together
 
 
 class ArrivalLimit:
-    """A token bucket. `dropped`: arrivals that were over the limit."""
+    """`dropped` counts arrivals above the limit."""
 
     def __init__(self, most_hz: float) -> None:
         """most_hz: above 0."""
@@ -18,7 +16,7 @@ class ArrivalLimit:
         self._at_ns: int | None = None
 
     def take(self, now_ns: int) -> bool:
-        """Whether one that arrives now is within the limit; `now_ns` never decreases."""
+        """True if an arrival at `now_ns` is within the limit; `now_ns` must not decrease."""
         if self._at_ns is not None:
             self._tokens += (now_ns - self._at_ns) * self.most_hz / NS_PER_S
         self._at_ns = now_ns

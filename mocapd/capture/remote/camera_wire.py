@@ -1,8 +1,8 @@
-"""What a camera node and a daemon say to each other: the keys `mocapd-camera/v1/<node>/...` and the messages.
+"""The protocol between camera nodes and daemons: keys `mocapd-camera/v1/<node>/...` and messages.
 
-A picture is the JPEG file itself (`image/jpeg`), so any program can show it; its stamp goes beside it, as Zenoh's
-attachment. The other messages are msgpack maps. Within v1 fields are only added. The keys do not begin with `mocapd/`:
-who may take skeletons may not thereby take pictures. Everything is bounded here before it is believed.
+A picture is a JPEG file (`image/jpeg`), so any program can show it; its stamp is Zenoh's attachment. The other messages
+are msgpack maps. Within v1 fields are only added. The keys do not begin with `mocapd/`, so access to skeletons does not
+grant access to pictures. This module bounds all input.
 """
 
 from typing import Annotated, Literal, TypeVar
@@ -48,12 +48,12 @@ def state(node: str, camera: str) -> str:
 
 
 def control(node: str, camera: str) -> str:
-    """Takes `Order`, answers with `Done`; not for everybody."""
+    """Takes `Order`, answers with `Done`; for the paired daemon only."""
     return f"{ROOT}/{node}/{camera}/control"
 
 
 def alive(node: str, camera: str) -> str:
-    """The liveliness token, there while the camera delivers."""
+    """The liveliness token, present while the camera delivers."""
     return f"{ROOT}/{node}/{camera}/alive"
 
 
@@ -72,7 +72,7 @@ class PictureStamp(msgspec.Struct, frozen=True):
 
 
 class CameraState(msgspec.Struct, frozen=True):
-    """How a camera fares at its node."""
+    """The status of a camera at its node."""
 
     node: Name
     camera: Name
@@ -96,8 +96,8 @@ class ClockAnswer(msgspec.Struct, frozen=True):
     schema: Schema = SCHEMA
 
 
-class Kept(msgspec.Struct, frozen=True, omit_defaults=True):
-    """What a camera is to hold at each opening: the fields of `capture.webcam.controls.Controls`."""
+class LockedControls(msgspec.Struct, frozen=True, omit_defaults=True):
+    """The controls to set at each opening: the fields of `capture.webcam.controls.Controls`."""
 
     auto_exposure: bool | None = None
     exposure: Value | None = None
@@ -116,12 +116,12 @@ class Order(msgspec.Struct, frozen=True):
     verb: Literal["range", "read", "write", "keep"]
     control: Control | None = None
     value: Value = 0
-    kept: Kept = Kept()
+    kept: LockedControls = LockedControls()
     schema: Schema = SCHEMA
 
 
 class Done(msgspec.Struct, frozen=True):
-    """What the camera holds now, or what the control takes; `trouble`: why nothing was done."""
+    """The control's value now, or its range; `trouble`: why nothing was done."""
 
     value: Value | None = None
     limits: tuple[Value, Value, Value] | None = None
@@ -130,16 +130,16 @@ class Done(msgspec.Struct, frozen=True):
 
 
 def encode(message: msgspec.Struct) -> bytes:
-    """As it is sent."""
+    """Encodes a message."""
     return msgspec.msgpack.encode(message)
 
 
 def decode(data: bytes, kind: type[M]) -> M:
-    """A message of this kind. Raises MalformedError, also for one of another version."""
+    """Decodes a message of this type. Raises MalformedError, also for another version."""
     if len(data) > MOST_MESSAGE_BYTES:
         raise MalformedError(f"a message of {len(data)} bytes")
     message = decode_msgpack(data, kind)
-    said = getattr(message, "schema", None)
-    if said != SCHEMA:
-        raise MalformedError(f"of the schema {said!r}, this program reads {SCHEMA!r}")
+    schema = getattr(message, "schema", None)
+    if schema != SCHEMA:
+        raise MalformedError(f"of the schema {schema!r}, this program reads {SCHEMA!r}")
     return message

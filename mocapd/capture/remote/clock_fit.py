@@ -1,10 +1,9 @@
-"""Relates the clock of another machine to ours by questions and answers. Pure: no clock, no thread.
+"""Estimates offset and drift of a remote clock from NTP-like exchanges. Pure: no clock, no thread.
 
-A question leaves at t0 by our clock, reaches the other at t1 by its own, is answered at t2 and the answer is here
-at t3 (Mills, RFC 5905 §8). Then offset = ((t1 - t0) + (t2 - t3)) / 2 and round trip = (t3 - t0) - (t2 - t1). The offset is
-wrong by half the difference of both ways: at most half the round trip, and little when the round trip is
-short. So an answer counts the less, the longer it took beyond what the way takes without any waiting; through those
-that count goes a line, whose slope is the drift, with outliers weighed down (Huber).
+A request leaves at t0 (our clock), arrives at t1 (remote clock), is answered at t2, and the answer arrives at t3 (Mills,
+RFC 5905 §8). Then offset = ((t1 - t0) + (t2 - t3)) / 2 and round trip = (t3 - t0) - (t2 - t1). The error of the offset is
+half the difference of both ways: at most half the round trip. So a sample's standard deviation grows with its queueing
+delay, the round trip beyond the minimum. A Huber-weighted line through the samples gives offset and drift.
 """
 
 from dataclasses import dataclass
@@ -17,8 +16,8 @@ _DRIFT_PRIOR = 1e-4  # quartz of ordinary machines: within 100 ppm
 _MOST_DRIFT = 1e-3  # of what is taken for a clock
 _NOISE_FLOOR_NS = 30_000.0  # of an answer as fast as the fastest: threads that are woken
 _HUBER = 1.5  # [standard deviations]
-_ROUNDS = 4  # of weighing down; the weights stand still by then
-_LOWEST = 5  # round trips that tell how short one without any waiting would be
+_ROUNDS = 4  # of reweighting; the weights have converged by then
+_LOWEST = 5  # shortest round trips, which give the round trip without queueing
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +34,8 @@ class ClockSample:
 class ClockLine:
     """The other clock minus ours: offset_ns at reference_ns of our clock, and drift [s/s].
 
-    uncertainty_ns: one standard deviation at the newest sample. asymmetry_ns: what no question can find out, half the
-    shortest round trip, were all of it on one way.
+    uncertainty_ns: one standard deviation at the newest sample. asymmetry_ns: bound of the unobservable error, half the
+    shortest round trip.
     """
 
     reference_ns: int
@@ -46,18 +45,18 @@ class ClockLine:
     asymmetry_ns: float
 
     def local_from_remote(self, remote_ns: int) -> int:
-        """A time of the other clock by ours [ns]."""
-        # first without the drift, which then is of a small difference: no digits are lost
+        """Converts a time of the remote clock to ours [ns]."""
+        # subtract the offset first: the drift then acts on a small difference, without loss of digits
         near_ns = remote_ns - self.offset_ns
         return near_ns - round(self.drift / (1.0 + self.drift) * (near_ns - self.reference_ns))
 
     def remote_from_local(self, local_ns: int) -> int:
-        """A time of our clock by the other [ns]."""
+        """Converts a time of our clock to the remote one [ns]."""
         return local_ns + self.offset_ns + round(self.drift * (local_ns - self.reference_ns))
 
 
 def clock_sample(asked_ns: int, taken_ns: int, answered_ns: int, came_ns: int) -> ClockSample:
-    """From the four times: asked and come by our clock, taken and answered by the other."""
+    """The sample of one exchange: asked_ns and came_ns by our clock, taken_ns and answered_ns by the remote one."""
     return ClockSample(
         local_ns=(asked_ns + came_ns) // 2,
         offset_ns=((taken_ns - asked_ns) + (answered_ns - came_ns)) // 2,
@@ -70,7 +69,7 @@ def fit_clock(local_ns: Ints, offset_ns: Ints, round_trip_ns: Ints) -> ClockLine
     reference_ns, base_ns = int(local_ns[-1]), int(np.median(offset_ns))
     t_s = (local_ns - reference_ns) / 1e9
     y_ns = (offset_ns - base_ns).astype(np.float64)
-    # all of the waiting may be on one way or the other: half of it, evenly spread, has this deviation
+    # queueing may be on either way: the error is uniform within half of it
     waited_ns = round_trip_ns - _without_waiting_ns(round_trip_ns)
     sigma_ns = np.hypot(_NOISE_FLOOR_NS, waited_ns / 2.0 / np.sqrt(3.0))
     weights = np.ones_like(t_s)
@@ -88,13 +87,13 @@ def fit_clock(local_ns: Ints, offset_ns: Ints, round_trip_ns: Ints) -> ClockLine
 
 
 def _without_waiting_ns(round_trip_ns: Ints) -> float:
-    """The round trip of a question that waits nowhere; shorter than the shortest, which had some luck on both ways.
+    """Estimates the round trip without queueing, which is shorter than the shortest sample.
 
     Where each way waits by itself, the k shortest waits rise as sqrt(k), the first of them 0.89 such steps from 0.
     """
     lowest_ns = np.sort(round_trip_ns)[:_LOWEST].astype(np.float64)
     if len(lowest_ns) < 2:
-        return 0.0  # nothing is known of it
+        return 0.0  # no estimate
     first = np.sqrt(np.pi) / 2.0
     step_ns = (lowest_ns[-1] - lowest_ns[0]) / (np.sqrt(len(lowest_ns)) - first)
     return max(0.0, float(lowest_ns[0] - first * step_ns))

@@ -1,10 +1,10 @@
-"""From what arrived to a Frame: the stamp believed only so far, the picture measured before it is decoded."""
+"""Converts a received picture to a Frame: checks the stamp, and the picture's size before decoding."""
 
 import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 from dataclasses import dataclass
 
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import PictureStamp
@@ -18,7 +18,7 @@ _OLDEST_NS = NS_PER_S  # an exposure longer ago than this, or so far ahead, is o
 
 @dataclass(frozen=True, slots=True)
 class Arrived:
-    """A picture as it came, not looked into yet: the file, its stamp, and when it came [ns, CLOCK_MONOTONIC]."""
+    """A received picture, not parsed yet: file, stamp, and arrival time [ns, CLOCK_MONOTONIC]."""
 
     data: bytes
     stamp: bytes
@@ -35,8 +35,8 @@ class PictureReader:
     def read(
         self, arrived: Arrived, size_px: tuple[int, int], run: int | None, clock: ClockLine | None
     ) -> Frame:
-        """size_px: (width, height) that it must have; run, clock: of its node. Raises MalformedError, also for one
-        of a node that was started anew and whose clock is not known yet."""
+        """size_px: required (width, height); run, clock: of its node. Raises MalformedError, also after a restart of the
+        node until its clock is estimated."""
         stamp = camera_wire.decode(arrived.stamp, PictureStamp)
         if clock is None or stamp.run != run:
             raise MalformedError("is of another run of its node")
@@ -44,7 +44,7 @@ class PictureReader:
         if abs(t_ns - arrived.came_ns) > _OLDEST_NS:
             raise MalformedError("was exposed at a time that cannot be")
         pixels = frozen_pixels(decode_camera_picture(arrived.data, size_px))
-        # no picture is exposed after it came, nor before the one before it: the rest of the clock's error
+        # clip the clock's error: an exposure precedes its arrival and follows the previous exposure
         t_ns = max(min(t_ns, arrived.came_ns), self._last_ns + 1)
         self._last_ns = t_ns
         return Frame(self._camera, stamp.seq, t_ns, pixels, arrived.data)

@@ -1,4 +1,4 @@
-"""Where a camera of another machine is: `zenoh://HOST:PORT/NODE/CAMERA`, and `zenohs://` over TLS."""
+"""The address of a remote camera: `zenoh://HOST:PORT/NODE/CAMERA`, and `zenohs://` over TLS."""
 
 import re
 from dataclasses import dataclass, field
@@ -38,29 +38,28 @@ class RemoteAddress:
 
 
 def is_remote(address: str) -> bool:
-    """Whether it is written so."""
+    """True for an address of this form."""
     return address.partition("://")[0].lower() in SCHEMES and "://" in address
 
 
 def parse_remote(address: str) -> RemoteAddress:
-    """Raises ConfigError for what is no such address; its password is not shown."""
-    return _parsed(address, 2)
+    """Parses a camera's address. Raises ConfigError, without the password in its message."""
+    return _parse_address(address, 2)
 
 
 def parse_place(address: str) -> RemoteAddress:
-    """Of a node or of all behind a host: `zenoh://HOST` or `zenoh://HOST/NODE`; what is not named is any. Raises
-    ConfigError."""
-    return _parsed(address, 0)
+    """Parses `zenoh://HOST` or `zenoh://HOST/NODE`; missing names match any. Raises ConfigError."""
+    return _parse_address(address, 0)
 
 
 def address_of(place: str, node: str, camera: str) -> str:
-    """The address of a camera that was found at a place."""
+    """The address of a camera at `place`, a URL of host or node."""
     parts = urlsplit(place)
     return parts._replace(path=f"/{node}/{camera}").geturl()
 
 
-def _parsed(address: str, fewest: int) -> RemoteAddress:
-    """With at least so many names of node and camera."""
+def _parse_address(address: str, fewest: int) -> RemoteAddress:
+    """fewest: least number of names, of node and camera."""
     if len(address) > _LONGEST:
         raise ConfigError(f"an address of {len(address)} characters", "source", f"write {FORM}")
     parts = split_url(address)

@@ -35,7 +35,7 @@ class RemoteControls:
 
     def keep(self, controls: Controls) -> None:
         """The node sets these now and whenever the camera comes back. Raises UnavailableError."""
-        self._done(Order("keep", kept=camera_wire.Kept(**asdict(controls))))
+        self._done(Order("keep", kept=camera_wire.LockedControls(**asdict(controls))))
 
     def _done(self, order: Order) -> Done:
         done = self._ask(order)

@@ -1,4 +1,4 @@
-"""The Zenoh session of one remote camera: its newest picture, questions to its node, and the end of both."""
+"""The Zenoh session of one remote camera: its newest picture, and requests to its node."""
 
 import json
 import threading
@@ -22,19 +22,19 @@ from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import MalformedError, UnavailableError
 
 _CONNECT_S = 1.0
-_CLOSE_S = 0.05  # the end is not waited for: many cameras end together
-_LOST_S = 1.0  # after which an answer is not expected any more
-_PING_NS = NS_PER_S // 4  # how often the other clock is asked
-_UNSURE_PING_NS = NS_PER_S // 20  # the same while it is not known well: answers wait on their way
+_CLOSE_S = 0.05  # closing continues in the background: many cameras close together
+_LOST_S = 1.0  # timeout of a clock request
+_PING_NS = NS_PER_S // 4  # interval of clock requests
+_UNSURE_PING_NS = NS_PER_S // 20  # the interval while the estimate is uncertain
 _SURE_NS = 300_000
 
 
 class RemoteLink:
-    """From its making to `close`, which any thread may call and which wakes `newest`. `clock`: what the answers to
-    `ping` have told."""
+    """Open from construction to `close`, which any thread may call and which wakes `newest`. `clock`: estimate from the
+    answers to `ping`."""
 
     def __init__(self, address: RemoteAddress) -> None:
-        """Raises UnavailableError when nobody answers there."""
+        """Raises UnavailableError without an answer from the endpoint."""
         self.clock = ClockTrack()
         self.run: int | None = None  # of the node, by its last answer
         self._address = address
@@ -68,23 +68,24 @@ class RemoteLink:
         self._opened.enter_context(self._session)
 
     def listen(self, limit: ArrivalLimit) -> None:
-        """From now on keep the newest picture, of at most so many a second, and notice when the camera goes. Raises
-        UnavailableError."""
+        """Subscribes to pictures, within `limit`, and to the camera's liveliness. Raises UnavailableError."""
         pictures = camera_wire.picture(self._address.node, self._address.camera)
         token = camera_wire.alive(self._address.node, self._address.camera)
         try:
             with zenoh_call():
-                # on Zenoh's own thread: the Python thread it would else start hinders the interpreter's exit
-                arrived = zenoh.handlers.Callback(partial(self._arrived, limit), indirect=False)
-                self._opened.enter_context(self._session.declare_subscriber(pictures, arrived))
-                told = zenoh.handlers.Callback(self._told, indirect=False)
+                # indirect=False: Zenoh would start a Python thread that blocks the interpreter's exit
+                on_picture = zenoh.handlers.Callback(
+                    partial(self._on_picture, limit), indirect=False
+                )
+                self._opened.enter_context(self._session.declare_subscriber(pictures, on_picture))
+                on_liveliness = zenoh.handlers.Callback(self._on_liveliness, indirect=False)
                 liveliness = self._session.liveliness()
-                self._opened.enter_context(liveliness.declare_subscriber(token, told))
+                self._opened.enter_context(liveliness.declare_subscriber(token, on_liveliness))
         except zenoh.ZError:
             raise self._lost() from None
 
     def newest(self, timeout_s: float) -> Arrived | None:
-        """The newest picture that was not fetched yet, waiting for it. None: none came, or see `is_over`."""
+        """Waits for the next picture, at most `timeout_s`. None after the timeout, `close`, or loss of the camera."""
         with self._changed:
             self._changed.wait_for(
                 lambda: self._closed or self._gone or self._newest is not None, timeout_s
@@ -99,11 +100,11 @@ class RemoteLink:
 
     @property
     def is_gone(self) -> bool:
-        """Whether the node has said that the camera is gone."""
+        """True after the node withdrew the camera's liveliness token."""
         return self._gone
 
     def ask(self, key: str, kind: type[M], order: msgspec.Struct | None, timeout_s: float) -> M:
-        """The answer. Raises UnavailableError when none comes, or none that is understood."""
+        """The first answer. Raises UnavailableError without a valid one."""
         answers = self.ask_all(key, kind, order, timeout_s)
         if not answers:
             raise UnavailableError(
@@ -114,8 +115,7 @@ class RemoteLink:
     def ask_all(
         self, key: str, kind: type[M], order: msgspec.Struct | None, timeout_s: float
     ) -> list[M]:
-        """What all who take this key answer. Whoever is not understood is left out, and told when nobody else is there:
-        raises UnavailableError."""
+        """All valid answers to a key. Raises UnavailableError if all answers are invalid."""
         payload = None if order is None else camera_wire.encode(order)
         try:
             with zenoh_call():
@@ -126,7 +126,7 @@ class RemoteLink:
                     camera_wire.MOST_MESSAGE_BYTES,
                     payload=payload,
                     target=zenoh.QueryTarget.ALL,
-                    # else of two that answer to one name the first is not heard of
+                    # else Zenoh drops all but one answer of nodes with equal names
                     consolidation=zenoh.ConsolidationMode.NONE,
                 )
         except zenoh.ZError:
@@ -147,25 +147,25 @@ class RemoteLink:
         )
 
     def ping(self, answered: threading.Event | None = None) -> None:
-        """Ask for the other clock; `clock` learns of the answer when it comes. Raises UnavailableError."""
+        """Sends a clock request; its answer updates `clock`. Raises UnavailableError."""
 
-        def came(reply: zenoh.Reply) -> None:  # on Zenoh's thread
+        def on_reply(reply: zenoh.Reply) -> None:  # on Zenoh's thread
             came_ns = monotonic_ns()
             if reply.ok is not None and len(reply.ok.payload) <= camera_wire.MOST_MESSAGE_BYTES:
-                self._told_time(asked_ns, reply.ok.payload.to_bytes(), came_ns)
+                self._add_clock_answer(asked_ns, reply.ok.payload.to_bytes(), came_ns)
             if answered is not None:
                 answered.set()
 
         try:
             with zenoh_call():
-                handler = zenoh.handlers.Callback(came, indirect=False)
+                handler = zenoh.handlers.Callback(on_reply, indirect=False)
                 asked_ns = monotonic_ns()
                 self._session.get(camera_wire.clock(self._address.node), handler, timeout=_LOST_S)
         except zenoh.ZError:
             raise self._lost() from None
 
     def ping_if_due(self) -> None:
-        """To be called often: asks for the other clock now and then, oftener while it is not known well. Raises
+        """Sends a clock request when one is due, more often while the estimate is uncertain; call often. Raises
         UnavailableError."""
         line, now_ns = self.clock.line, monotonic_ns()
         is_sure = line is not None and line.uncertainty_ns < _SURE_NS
@@ -174,7 +174,7 @@ class RemoteLink:
             self.ping()
 
     def close(self) -> None:
-        """Let go; never blocks for long, may be called twice."""
+        """Closes the session; returns within _CLOSE_S, idempotent."""
         with self._changed:
             was_closed, self._closed = self._closed, True
             self._newest = None
@@ -182,7 +182,7 @@ class RemoteLink:
         if not was_closed:
             close_soon(self._opened, _CLOSE_S)
 
-    def _arrived(self, limit: ArrivalLimit, sample: zenoh.Sample) -> None:
+    def _on_picture(self, limit: ArrivalLimit, sample: zenoh.Sample) -> None:
         came_ns = monotonic_ns()
         stamp = sample.attachment
         if (
@@ -198,20 +198,20 @@ class RemoteLink:
                 self._newest = arrived
                 self._changed.notify_all()
 
-    def _told(self, sample: zenoh.Sample) -> None:
+    def _on_liveliness(self, sample: zenoh.Sample) -> None:
         with self._changed:
             self._gone = sample.kind == zenoh.SampleKind.DELETE
             self._changed.notify_all()
 
-    def _told_time(self, asked_ns: int, data: bytes, came_ns: int) -> None:
+    def _add_clock_answer(self, asked_ns: int, data: bytes, came_ns: int) -> None:
         try:
             answer = camera_wire.decode(data, camera_wire.ClockAnswer)
         except MalformedError:
-            return  # no answer: a node whose clock does not come is told by who needs it
+            return  # counts as no answer: `RemoteSource` reports a missing clock
         if answer.run != self.run:
             self.run = answer.run
             self.clock.restart(came_ns)
-        self.clock.answered(asked_ns, answer, came_ns)
+        self.clock.add_answer(asked_ns, answer, came_ns)
 
     def _lost(self) -> UnavailableError:
         return UnavailableError(

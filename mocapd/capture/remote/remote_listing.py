@@ -1,4 +1,4 @@
-"""What cameras there are at a camera node, or at all that joined a router (`mocapd cameras --at`)."""
+"""Lists the cameras of a camera node, or of all nodes behind a router (`mocapd cameras --at`)."""
 
 from dataclasses import dataclass
 
@@ -14,14 +14,14 @@ _ANSWER_S = 2.0
 
 @dataclass(frozen=True, slots=True)
 class RemoteInfo:
-    """One of them. spec: what to write into the config, but for the password."""
+    """One remote camera. spec: its address for the configuration, without the password."""
 
     state: CameraState
     spec: str
 
 
 def list_remote(place: str) -> tuple[RemoteInfo, ...]:
-    """By node and name. Raises ConfigError, or UnavailableError when nobody answers there."""
+    """The cameras by node and name. Raises ConfigError, or UnavailableError without an answer."""
     address = parse_place(place)
     link = RemoteLink(address)
     try:
@@ -35,6 +35,6 @@ def list_remote(place: str) -> tuple[RemoteInfo, ...]:
         )
     shown = without_password(place)
     return tuple(
-        RemoteInfo(one, address_of(shown, one.node, one.camera))
-        for one in sorted(states, key=lambda one: (one.node, one.camera))
+        RemoteInfo(state, address_of(shown, state.node, state.camera))
+        for state in sorted(states, key=lambda state: (state.node, state.camera))
     )

@@ -23,8 +23,8 @@ _LOG = logging.getLogger(__name__)
 
 _SILENT_NS = NS_PER_S  # without a picture: the node or the network is gone
 _TORN_LIMIT_NS = 2 * NS_PER_S  # with damaged pictures only
-_LOOK_S = 0.05  # how long a picture is waited for before the rest is looked at
-# to know the clock at the start: at most so many questions, so long, until it is known so well
+_LOOK_S = 0.05  # longest wait for a picture between other checks
+# initial clock estimate: at most so many requests and so long, until the error is below _GOOD_NS
 _FIRST_PINGS, _FIRST_NS, _GOOD_NS = 40, 6 * NS_PER_S // 10, 200_000
 _FIRST_ANSWER_S = 0.15  # then the next is asked
 _ANSWER_S = 1.0  # from a node that is there
@@ -32,15 +32,15 @@ _ANSWER_S = 1.0  # from a node that is there
 _MOST_OF_RATE = 1.5
 _MANY_DROPPED = 300  # pictures beyond that, until the log says so
 _TIME_SERVICE = "look at the time service of its machine, or restart the node"
-_MAY_I_S = 0.5  # who may not set the camera gets no answer at all
+_ORDER_S = 0.5  # an unauthorised order gets no answer
 
 
 class RemoteSource:
-    """See Source and, where the node lets this daemon set the camera, Lockable: `takes_orders` says so.
+    """See Source, and Lockable where the node permits this daemon to set the camera (`takes_orders`).
 
-    Pictures beyond 1.5 times `settings.fps_hz` are dropped undecoded. `notice`: see Notices.
-    The exposure is told by the node's clock, which is related to ours by `clock`; `torn` counts pictures that came
-    damaged or with an impossible time. A node that was started anew is opened anew. `camera_failed`: see LookedAfter.
+    Drops pictures beyond 1.5 times `settings.fps_hz` undecoded. `notice`: see Notices. `clock` converts exposure times
+    to our clock. `torn` counts pictures that are damaged or have an impossible time. A restarted node is reconnected.
+    `camera_failed`: see NodeManaged.
     """
 
     recorded = False
@@ -52,8 +52,8 @@ class RemoteSource:
         size_px: tuple[int, int] | None = None,
         settings: WebcamSettings | None = None,
     ) -> None:
-        """size_px: (width, height) of its calibration, which it must have. settings: of these the controls are set,
-        size and rate are the node's own."""
+        """size_px: required (width, height), of its calibration. settings: only the controls are used, as the node sets
+        size and rate."""
         self.name = name
         self.torn = 0
         self.camera_failed = False
@@ -70,7 +70,7 @@ class RemoteSource:
 
     @property
     def clock(self) -> ClockLine | None:
-        """The node's clock against ours; None while it is not known."""
+        """The node's clock against ours; None before an estimate."""
         link = self._link
         return link.clock.line if link is not None else None
 
@@ -90,7 +90,7 @@ class RemoteSource:
             link.close()
             raise UnavailableError("was closed while it was opened", self.name, "open it again")
         try:
-            state = self._looked_up(link)
+            state = self._query_state(link)
             self._learn_clock(link)
             link.listen(self._limit)
         except BaseException:
@@ -111,7 +111,7 @@ class RemoteSource:
             if link.is_closed:
                 raise CameraLost("was closed", self.name, "it is opened again by itself")
             if link.is_gone or now_ns - heard_ns > _SILENT_NS:
-                raise self._lost(link, *self._told(link))
+                raise self._lost(link, *self._loss_reason(link))
             self._ping(link)
             self._look_at_rate()
             arrived = link.newest(_LOOK_S)
@@ -135,7 +135,7 @@ class RemoteSource:
         return f"{trouble} -- {_TIME_SERVICE}" if trouble else ""
 
     def close(self) -> None:
-        """Let go and wake a blocked `read`."""
+        """Closes the connection and wakes a blocked `read`."""
         with self._lock:
             self._turn += 1
             link, self._link = self._link, None
@@ -146,7 +146,7 @@ class RemoteSource:
 
     @property
     def takes_orders(self) -> bool:
-        """Whether its controls can be set: it is a webcam, and this daemon is the one that its node is paired with."""
+        """True if this daemon may set its controls: it is a webcam, and its node is paired with this daemon."""
         return self._takes_orders
 
     @property
@@ -171,7 +171,7 @@ class RemoteSource:
 
     # -- opening ---------------------------------------------------------------------------------
 
-    def _looked_up(self, link: RemoteLink) -> CameraState:
+    def _query_state(self, link: RemoteLink) -> CameraState:
         node, camera = self._address.node, self._address.camera
         states = link.ask_all(camera_wire.state(node, camera), CameraState, None, _ANSWER_S)
         if not states:
@@ -180,7 +180,7 @@ class RemoteSource:
                 self._address.endpoint,
                 "start `mocapd camera-node`, which says what its cameras are called",
             )
-        if len({one.run for one in states}) > 1:  # their pictures and clocks would come mixed
+        if len({state.run for state in states}) > 1:  # else their pictures and clocks would mix
             raise UnavailableError(
                 f"{len(states)} camera nodes are called {node!r}, and each has a camera {camera!r}",
                 self._address.endpoint,
@@ -195,7 +195,7 @@ class RemoteSource:
         return state
 
     def _learn_clock(self, link: RemoteLink) -> None:
-        """Ask until its time is known to a fraction of a millisecond, or for half a second."""
+        """Exchanges clock requests until the error is below _GOOD_NS or _FIRST_NS has passed."""
         began_ns = monotonic_ns()
         for _ in range(_FIRST_PINGS):
             answered = threading.Event()
@@ -208,17 +208,17 @@ class RemoteSource:
                 break
         if link.clock.line is None:
             raise UnavailableError(
-                "its node does not tell the time", self._address.place, "start it anew"
+                "its node does not answer clock requests", self._address.place, "restart it"
             )
 
     def _set_up(self, link: RemoteLink, state: CameraState) -> None:
-        """What was locked is held again, also by a node that knows nothing of it any more."""
+        """Sends the locked controls again, as a restarted node has lost them."""
         self._takes_orders = False
         if not state.can_set:
             return
         controls = self._controls(link)
         try:
-            # an order that changes nothing: who may not set the camera is not answered
+            # also tests the permission: an unauthorised order gets no answer
             controls.keep(self._settings.controls)
         except UnavailableError as error:
             _LOG.info("%s: its node does not let it be set: %s", self.name, error.what)
@@ -229,14 +229,14 @@ class RemoteSource:
         key = camera_wire.control(self._address.node, self._address.camera)
 
         def ask(order: Order) -> Done:
-            return link.ask(key, Done, order, _MAY_I_S)
+            return link.ask(key, Done, order, _ORDER_S)
 
         return RemoteControls(self.name, ask)
 
     def _keep(self, device: RemoteControls, controls: Controls) -> None:
         try:
             device.keep(controls)
-        except UnavailableError as error:  # told again at its next opening
+        except UnavailableError as error:  # repeated at its next opening
             _LOG.warning("%s: was not set: %s", self.name, error)
 
     # -- reading ---------------------------------------------------------------------------------
@@ -256,14 +256,14 @@ class RemoteSource:
                 *(self.name, self._limit.most_hz),
             )
 
-    def _told(self, link: RemoteLink) -> tuple[str, str]:
-        """What the node says of a camera from which nothing comes, and the mend."""
+    def _loss_reason(self, link: RemoteLink) -> tuple[str, str]:
+        """The node's reason for a silent camera, and the fix."""
         key = camera_wire.state(self._address.node, self._address.camera)
         try:
-            state = link.ask(key, CameraState, None, _MAY_I_S)
+            state = link.ask(key, CameraState, None, _ORDER_S)
         except UnavailableError:
             return "its node is gone", "check the network, and that `mocapd camera-node` runs there"
-        # also of one that is back already
+        # also for a camera that is back already
         self.camera_failed = link.is_gone or state.state != "live"
         if state.state == "live":
             return "its pictures do not arrive", "check the network: it may be too slow for them"
@@ -275,6 +275,6 @@ class RemoteSource:
 
 
 def _trouble(state: CameraState) -> tuple[str, str]:
-    """What is wrong with a camera at its node, and the mend."""
+    """The trouble with a camera at its node, and the fix."""
     what, _, fix = state.reason.partition(" -- ")
     return what or f"is {state.state} at its node", fix or "it is tried again by itself"

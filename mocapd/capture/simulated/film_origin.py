@@ -1,11 +1,11 @@
-"""A scenario's film as the origin of simulated webcams: what they show, and what their rig tells a tracker."""
+"""A scenario's film as the origin of simulated webcams: their pictures, rig and calibration."""
 
 import logging
 import threading
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.base import Source
 from mocapd.capture.file import check_size
 from mocapd.capture.origin import Progress, split_address
@@ -24,8 +24,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class FilmOrigin:
-    """See Origin. Its cameras share the film's beginning, which is when the first of them is opened. With `sockets`
-    they are plugged in and out."""
+    """See Origin. Its cameras share one start time, at the first opening. With `sockets` they can be unplugged."""
 
     def __init__(self, address: str, film: Film, sockets: Sockets | None = None) -> None:
         self.rig_source = address
@@ -79,7 +78,7 @@ class FilmOrigin:
         """See Origin. A camera's id is its name in the scenario, which has the rig."""
         name = request.name or split_address(address)[1]
         camera = self._camera(name)
-        (size_px,) = (one.size_px for one in self.rig.cameras if one.name == name)
+        (size_px,) = (spec.size_px for spec in self.rig.cameras if spec.name == name)
         check_size(self.rig_source, name, size_px, request.size_px)
         return camera
 
@@ -108,7 +107,7 @@ class _FilmStart:
         with self._lock:
             if self._ns is None:
                 self._ns = monotonic_ns()
-                # with this whoever watches can say where the simulated person was
+                # lets a test compute the simulated person's pose at any time
                 _LOG.info(
                     "frame %d of the film %r is at %d ns of the monotonic clock, at %g Hz",
                     *(self._first, self._scenario.name, self._ns, self._scenario.fps_hz),

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import CameraLost, ConfigError, InputError, MalformedError
@@ -16,12 +16,12 @@ from mocapd.types import Frame
 
 
 class SimCamera:
-    """One camera of a scenario as an ordinary `Source`; what it shows is asked frame by frame.
+    """One camera of a scenario as an ordinary `Source`, which requests its pictures frame by frame.
 
     Frame n is exposed at epoch_ns + n / fps + the camera's clock offset; with one epoch for all of
     them, the cameras of a scenario show one world without further coordination. As with a webcam
     that buffers a single frame, a reader that is late gets the newest one, and `seq` shows the gap;
-    so do frames that the scenario drops. In the scenario's outages `read` says that the camera is lost.
+    so do frames that the scenario drops. In the scenario's outages `read` raises CameraLost.
     `t_ns` is the middle of the exposure; a frame is handed out when its exposure ends. Decoding happens
     in `read`.
     """
@@ -96,7 +96,7 @@ class SimCamera:
         )
 
     def drops(self, n: int) -> bool:
-        """Whether frame n never arrives; follows from the scenario's seed alone."""
+        """True if frame n is lost; determined by the scenario's seed."""
         if self._spec.dropped <= 0.0:
             return False
         return bool(np.random.default_rng([*self._seed, n]).uniform() < self._spec.dropped)
@@ -105,7 +105,7 @@ class SimCamera:
         return self.exposure_ns(n) + nanoseconds(0.5 * self._spec.shutter_s)
 
     def _due(self, now_ns: int) -> int:
-        """The last frame whose exposure has ended by now."""
+        """The last frame with a finished exposure."""
         return int((now_ns - self._ready_ns(0)) * self._fps_hz // 1_000_000_000)
 
 

@@ -26,14 +26,14 @@ def _scenario_path(address: str) -> Path:
     name, _ = _split(address)
     if name.endswith(".toml"):
         return user_path(name)
-    known = {one.stem: one for one in asset_path("scenarios").glob("*.toml")}
-    if name not in known:
+    scenarios = {file.stem: file for file in asset_path("scenarios").glob("*.toml")}
+    if name not in scenarios:
         raise InputError(
             f"there is no scenario {name!r}",
             address,
-            f"one of {', '.join(sorted(known))}, or a .toml file",
+            f"one of {', '.join(sorted(scenarios))}, or a .toml file",
         )
-    return known[name]
+    return scenarios[name]
 
 
 def _split(address: str) -> tuple[str, str]:
@@ -44,7 +44,7 @@ def _split(address: str) -> tuple[str, str]:
 
 
 def scenario_address(name: str) -> str:
-    """What a scenario of calib/scenarios is called as an origin."""
+    """The origin's name of a scenario in calib/scenarios."""
     return f"{_PREFIX}{name}"
 
 

@@ -1,4 +1,4 @@
-"""A simulated webcam that is plugged in and out, and that has a webcam's faults; see `sockets`."""
+"""A simulated webcam with plugging and faults; see `sockets`."""
 
 import threading
 from collections.abc import Callable
@@ -8,7 +8,7 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.base import Source
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.simulated.sockets import Fault, FoundSocket, Sockets
@@ -21,9 +21,9 @@ _STUCK_S = 0.05
 
 
 class SocketCamera:
-    """A webcam by its identity: it shows what the webcam sees that it was found as, be it the right one or not.
+    """A webcam found by identity; it shows the view of the webcam in that socket, even of a wrong one.
 
-    As a real one it is lost with the next picture when it is pulled out, and it is not opened twice.
+    As a real webcam, it is lost at the next picture after unplugging, and cannot be opened twice.
     """
 
     recorded = False
@@ -41,42 +41,42 @@ class SocketCamera:
     def open(self) -> None:
         """Raises UnavailableError (absent, busy, one of several alike), InputError or ConfigError."""
         self.close()
-        found = self._sockets.find(self.name)
-        self._sockets.take(found.plugged, self)
+        socket = self._sockets.find(self.name)
+        self._sockets.take(socket.plugged, self)
         self._closed.clear()
-        self._found, self._still = found, None
-        self._camera = self._shown(found.plugged.webcam)
+        self._found, self._still = socket, None
+        self._camera = self._shown(socket.plugged.webcam)
         self._camera.open()
 
     def read(self) -> Frame:
         """The next whole picture. Raises CameraLost."""
-        camera, found = self._camera, self._found
-        if camera is None or found is None:
+        camera, socket = self._camera, self._found
+        if camera is None or socket is None:
             raise CameraLost("is closed", fix="it is opened again by itself")
         while True:
             frame = camera.read()
-            picture = self._delivered(frame, self._fault(found))
+            picture = self._apply_fault(frame, self._fault(socket))
             if picture is not None:
                 return replace(picture, camera=self.name)
             self.torn += 1
 
     def close(self) -> None:
-        """Let go."""
+        """Closes the webcam."""
         self._closed.set()
-        found, camera = self._found, self._camera
+        socket, camera = self._found, self._camera
         self._found = self._camera = None
         if camera is not None:
             camera.close()
-        if found is not None:
-            self._sockets.give_back(found.plugged, self)
+        if socket is not None:
+            self._sockets.give_back(socket.plugged, self)
 
     def plugging(self) -> str:
         """See Pluggable."""
         try:
-            found = self._sockets.find(self.name)
+            socket = self._sockets.find(self.name)
         except (UnavailableError, InputError, ConfigError):
             return ""
-        return f"{found.port} {found.plugged.webcam} {found.plugged.plugging}"
+        return f"{socket.port} {socket.plugged.webcam} {socket.plugged.plugging}"
 
     @property
     def identity(self) -> WebcamIdentity:
@@ -86,28 +86,30 @@ class SocketCamera:
     @property
     def place(self) -> str:
         """See Pluggable."""
-        found = self._found
+        socket = self._found
         return (
-            f"in another USB port than configured ({found.port})" if found and found.moved else ""
+            f"in another USB port than configured ({socket.port})"
+            if socket and socket.moved
+            else ""
         )
 
-    def _fault(self, found: FoundSocket) -> Fault:
-        """What ails it now. Raises CameraLost when it was pulled out, or says nothing; may not come back."""
-        now = self._sockets.now().sockets.get(found.port)
+    def _fault(self, socket: FoundSocket) -> Fault:
+        """The current fault. Raises CameraLost when unplugged or stalled; blocks during the fault STUCK."""
+        now = self._sockets.now().sockets.get(socket.port)
         while now is not None and now.fault is Fault.STUCK:
             threading.Event().wait(_STUCK_S)
-            now = self._sockets.now().sockets.get(found.port)
+            now = self._sockets.now().sockets.get(socket.port)
         if now is None or (now.webcam, now.plugging) != (
-            found.plugged.webcam,
-            found.plugged.plugging,
+            socket.plugged.webcam,
+            socket.plugged.plugging,
         ):
             raise CameraLost("was unplugged", fix="plug it in again")
         if now.fault is Fault.STALLED and not self._closed.wait(_STALL_S):
             raise CameraLost(f"sent nothing for {_STALL_S:.1f} s", fix="unplug and replug it")
         return now.fault
 
-    def _delivered(self, frame: Frame, fault: Fault) -> Frame | None:
-        """The picture as it comes with this fault; None when it is damaged."""
+    def _apply_fault(self, frame: Frame, fault: Fault) -> Frame | None:
+        """The picture with this fault applied; None when it is damaged."""
         if fault is Fault.FROZEN:
             self._still = still = self._still or frame
             return replace(still, seq=frame.seq, t_ns=frame.t_ns)

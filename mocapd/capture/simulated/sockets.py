@@ -1,10 +1,10 @@
-"""Simulated USB sockets: which webcam of a scenario sits in which, and what ails it, in a file that anybody may change.
+"""Simulated USB sockets: a file, editable at run time, says which webcam sits in which socket and its fault.
 
     {"webcams": {"cam0": "usb:1-1:046d:0825:A0", "cam1": "usb:1-2:046d:0825:B1"},
      "sockets": {"1-1": {"webcam": "cam0"}, "1-4": {"webcam": "cam1", "plugging": 7, "fault": "black"}}}
 
-`webcams`: what each is and where it was set up, as a configuration names it. `sockets`: what is plugged in now; who
-plugs in gives another number `plugging`, as the kernel gives another node. docs/faults.md tells how it is used.
+`webcams`: the identity of each, with the socket at its setup. `sockets`: what is plugged in now. Change `plugging` at
+each plugging in, as the kernel assigns another node. docs/faults.md describes the use.
 """
 
 import threading
@@ -24,7 +24,7 @@ _MOST_BYTES = 1 << 16
 
 
 class Fault(StrEnum):
-    """What a webcam does that is plugged in and not well."""
+    """Faults of a plugged webcam."""
 
     NONE = ""
     FROZEN = "frozen"  # the same picture over and over
@@ -36,7 +36,7 @@ class Fault(StrEnum):
 
 
 class Plugged(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What is in a socket."""
+    """The content of a socket."""
 
     webcam: str
     plugging: int = 0
@@ -52,7 +52,7 @@ class SocketsFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True, slots=True)
 class FoundSocket:
-    """Where a webcam was found: its port path, what is in it, and whether it is another one than configured."""
+    """The location of a webcam: port path, content of the socket; moved: not the configured port."""
 
     port: str
     plugged: Plugged
@@ -65,52 +65,55 @@ class Sockets:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._lock = threading.Lock()  # guards what follows
-        self._known: tuple[tuple[int, int, int], SocketsFile] | None = None
+        self._cached: tuple[tuple[int, int, int], SocketsFile] | None = None
         self._taken: dict[Plugged, object] = {}
 
     def now(self) -> SocketsFile:
         """Raises InputError."""
         try:
-            told = self.path.stat()
+            stat = self.path.stat()
         except OSError as error:
             raise InputError(f"cannot be read ({error.strerror})", str(self.path), _FIX) from None
-        mark = (told.st_ino, told.st_mtime_ns, told.st_size)
+        version = (stat.st_ino, stat.st_mtime_ns, stat.st_size)
         with self._lock:
-            if self._known is None or self._known[0] != mark:
+            if self._cached is None or self._cached[0] != version:
                 try:
-                    found = decode_json(read_file(self.path, _MOST_BYTES), SocketsFile)
+                    file = decode_json(read_file(self.path, _MOST_BYTES), SocketsFile)
                 except MalformedError as error:
                     raise InputError(f"no sockets: {error.what}", str(self.path), _FIX) from None
-                self._known = mark, found
-            return self._known[1]
+                self._cached = version, file
+            return self._cached[1]
 
     def identity(self, webcam: str) -> WebcamIdentity:
-        """What the webcam of this name is, and where it was set up. Raises InputError or ConfigError."""
+        """The identity of a webcam, with the socket at its setup. Raises InputError or ConfigError."""
         webcams = self.now().webcams
         if webcam not in webcams:
             raise InputError(f"there is no webcam {webcam!r}", str(self.path), _FIX)
         return parse_identity(webcams[webcam])
 
     def find(self, webcam: str) -> FoundSocket:
-        """Where the webcam of this name is, by its identity alone, as with real ones. Raises UnavailableError where it
-        is absent or cannot be told from others, InputError or ConfigError for a wrong file."""
+        """Finds a webcam by its identity, as with real ones. Raises UnavailableError where it is absent or ambiguous,
+        InputError or ConfigError for an invalid file."""
         file, wanted = self.now(), self.identity(webcam)
-        known = {name: parse_identity(text) for name, text in file.webcams.items()}
-        present = {_present(known, one.webcam, port): port for port, one in file.sockets.items()}
-        others = tuple(one for name, one in known.items() if name != webcam)
+        identities = {name: parse_identity(text) for name, text in file.webcams.items()}
+        present = {
+            _present(identities, plugged.webcam, port): port
+            for port, plugged in file.sockets.items()
+        }
+        others = tuple(identity for name, identity in identities.items() if name != webcam)
         match = match_identity(wanted, tuple(present), others)
         port = present[match.identity]
         return FoundSocket(port, file.sockets[port], match.moved)
 
     def take(self, plugged: Plugged, user: object) -> None:
-        """Stream from it. Raises UnavailableError while somebody else does."""
+        """Starts streaming. Raises UnavailableError while another user streams."""
         with self._lock:
             if self._taken.get(plugged, user) is not user:
                 raise UnavailableError("busy: used already by this process", plugged.webcam, _FIX)
             self._taken[plugged] = user
 
     def give_back(self, plugged: Plugged, user: object) -> None:
-        """Stream no more; nothing happens when somebody else does."""
+        """Stops streaming; no effect for another user."""
         with self._lock:
             if self._taken.get(plugged) is user:
                 del self._taken[plugged]
@@ -119,7 +122,7 @@ class Sockets:
 _FIX = "see docs/faults.md"
 
 
-def _present(known: Mapping[str, WebcamIdentity], webcam: str, port: str) -> WebcamIdentity:
-    if webcam not in known:
+def _present(identities: Mapping[str, WebcamIdentity], webcam: str, port: str) -> WebcamIdentity:
+    if webcam not in identities:
         raise InputError(f"socket {port} holds {webcam!r}, which is none of its webcams", "", _FIX)
-    return WebcamIdentity(port, *known[webcam].model)
+    return WebcamIdentity(port, *identities[webcam].model)

@@ -1,4 +1,4 @@
-"""Simulated webcams before a stage, on which the scenes of a first setup are played when told."""
+"""Simulated webcams that film a stage, on which the scenes of a first setup are played on request."""
 
 import threading
 from collections.abc import Mapping
@@ -11,9 +11,9 @@ from mocapd.sim.setup_scenes import SetupScene
 
 
 class Stage:
-    """What all cameras of a setup see. One for all of them; to be used from any thread.
+    """The scene that all cameras of a setup film. Thread-safe.
 
-    Nobody is there at first.
+    The stage is empty at first.
     """
 
     def __init__(
@@ -37,13 +37,13 @@ class Stage:
         next_frame = max(int(elapsed_ns * self.scenario.fps_hz // 1_000_000_000) + 1, 0)
         with self._lock:
             if wanted is not self._scene:
-                if next_frame > self._start:  # else the scene before has not been seen at all
+                if next_frame > self._start:  # else no camera has shown the previous scene
                     self._before, self._start_before = self._scene, self._start
                 self._scene, self._start = wanted, next_frame
             return self._start
 
     def jpeg(self, camera: str, n: int) -> bytes:
-        """What the camera sees in frame n, one of the last or the next to be exposed."""
+        """The camera's picture of frame n, a recent frame or the next one."""
         with self._lock:
             scene, start = self._scene, self._start
             if n < start:

@@ -1,4 +1,4 @@
-"""The controls of a webcam by name, read and set beside whoever streams from it.
+"""Reads and sets the controls of a webcam by name, also while another thread or program streams from it.
 
 V4L2 answers control questions on a second descriptor of a node that streams (V4L2 API, "Opening and
 Closing Devices"). The descriptor lives for one question only: held over an unplugging it would keep
@@ -54,18 +54,18 @@ def power_line_code(mains_hz: int) -> int:
 
 
 class ControlDevice(Protocol):
-    """Where controls are read and set. Every method raises UnavailableError when the camera is gone."""
+    """Access to a camera's controls. Every method raises UnavailableError when the camera is absent."""
 
     def range(self, control: Control) -> ControlRange | None:
-        """What it takes; None when the camera does not have it."""
+        """The control's range; None when the camera lacks it."""
         ...
 
     def read(self, control: Control) -> int | None:
-        """What it holds; None when the camera does not have it or does not tell."""
+        """The control's value; None when the camera lacks it or refuses to answer."""
         ...
 
     def write(self, control: Control, value: int) -> int | None:
-        """Set it; what it holds then, which need not be `value`: drivers clip and refuse."""
+        """Sets a value; returns the value read back, as drivers clip or refuse."""
         ...
 
 

@@ -1,6 +1,6 @@
-"""A camera's automatics: set free to find their values, locked at what they found, given back at last.
+"""Locks a camera's automatics: enable them to settle, lock their values, restore the earlier state.
 
-All of it works on a `ControlDevice`, so beside the thread that streams. UVC cameras set a value only
+All functions use a `ControlDevice`, so they work while another thread streams. UVC cameras set a value only
 while its automatic is off, so an automatic goes before its value, each way.
 """
 
@@ -14,16 +14,16 @@ from mocapd.capture.webcam.v4l2 import WebcamSettings
 
 MANUAL_EXPOSURE, AUTO_EXPOSURE, _AUTO_EVERYTHING = 1, 3, 0
 UNITS_PER_S = 10_000
-"""Of the control EXPOSURE, which counts 100 us."""
+"""Units of the control EXPOSURE, 100 us each."""
 
 
 @runtime_checkable
 class Lockable(Protocol):
-    """A source whose camera can be set from outside while its thread reads it."""
+    """A source whose controls can be set while its thread reads."""
 
     @property
     def settings(self) -> WebcamSettings:
-        """What it asks for at each opening."""
+        """The settings of each opening."""
         ...
 
     def device(self) -> ControlDevice | None:
@@ -31,7 +31,7 @@ class Lockable(Protocol):
         ...
 
     def change(self, settings: WebcamSettings) -> None:
-        """Ask for this from the next opening on; another size or rate makes it open anew at once."""
+        """Sets the settings of the next opening; another size or rate reopens the camera at once."""
         ...
 
 
@@ -57,7 +57,7 @@ Held = Mapping[Control, int]
 
 
 def read_held(device: ControlDevice) -> Held:
-    """Everything that a lock may change. Raises UnavailableError."""
+    """Reads all controls that a lock may change. Raises UnavailableError."""
     values = {}
     for control in Control:
         value = device.read(control) if device.range(control) is not None else None
@@ -70,32 +70,32 @@ def set_free(device: ControlDevice, held: Held) -> None:
     """Switch the automatics on, but for the one that would lower the rate. Raises UnavailableError."""
     if Control.DYNAMIC_FRAMERATE in held:
         device.write(Control.DYNAMIC_FRAMERATE, 0)
-    for one in _AUTOMATICS:
-        # one that cannot be switched back would leave the camera with a value of nobody's choice
-        if one.switch not in held or one.value not in held:
+    for automatic in _AUTOMATICS:
+        # without both controls the automatic's value could not be restored
+        if automatic.switch not in held or automatic.value not in held:
             continue
-        now = device.write(one.switch, one.on)
-        if now == one.off and one.switch is Control.AUTO_EXPOSURE:
-            device.write(one.switch, _AUTO_EVERYTHING)  # the few that steer an iris too
+        now = device.write(automatic.switch, automatic.on)
+        if now == automatic.off and automatic.switch is Control.AUTO_EXPOSURE:
+            device.write(automatic.switch, _AUTO_EVERYTHING)  # the few that steer an iris too
 
 
 def lock(device: ControlDevice, held: Held, fps_hz: float, mains_hz: int | None = None) -> Controls:
     """Switch the automatics off and keep the values they have found.
 
     held: what the camera has; fps_hz: its rate, which no exposure may lower; mains_hz: 50 or 60 when
-    lamps are seen to flicker: the exposure becomes a multiple of their period, 1/100 or 1/120 s.
+    lamps flicker: the exposure becomes a multiple of their period, 1/100 or 1/120 s.
     Returns what the camera holds now, as it is asked for at each opening. Raises UnavailableError.
     """
-    found = {one.value: device.read(one.value) for one in _AUTOMATICS if one.value in held}
+    settled = {a.value: device.read(a.value) for a in _AUTOMATICS if a.value in held}
     gain = device.read(Control.GAIN) if Control.GAIN in held else None
-    for one in _AUTOMATICS:
-        if one.switch in held:
-            device.write(one.switch, one.off)
-        value = found.get(one.value)
+    for automatic in _AUTOMATICS:
+        if automatic.switch in held:
+            device.write(automatic.switch, automatic.off)
+        value = settled.get(automatic.value)
         if value is not None:
-            if one.value is Control.EXPOSURE:
+            if automatic.value is Control.EXPOSURE:
                 value = exposure_units(value, fps_hz, mains_hz)
-            device.write(one.value, value)
+            device.write(automatic.value, value)
     if gain is not None:
         device.write(Control.GAIN, gain)
     if mains_hz is not None and Control.POWER_LINE in held:
@@ -120,7 +120,7 @@ def exposure_units(wanted: int, fps_hz: float, mains_hz: int | None) -> int:
 
 
 def as_controls(device: ControlDevice, held: Held, mains_hz: int | None = None) -> Controls:
-    """What the camera holds now, for its next opening: only controls that it has."""
+    """The current values of the camera's controls, for its next opening."""
 
     def value(control: Control) -> int | None:
         return device.read(control) if control in held else None
@@ -142,7 +142,7 @@ def as_controls(device: ControlDevice, held: Held, mains_hz: int | None = None) 
 
 
 def as_held(controls: Controls) -> Held:
-    """The values that a lock had found, for `restore`, which switches their automatics off."""
+    """The values of a lock, for `restore`, which switches their automatics off."""
     rate, mains_hz = controls.dynamic_framerate, controls.power_line_hz
     values = {
         Control.EXPOSURE: controls.exposure,
@@ -156,14 +156,14 @@ def as_held(controls: Controls) -> Held:
 
 
 def restore(device: ControlDevice, before: Held) -> None:
-    """Give back what was held before. Raises UnavailableError."""
-    for one in _AUTOMATICS:
-        was = before.get(one.switch)
-        if was in (None, one.off) and one.value in before:
-            device.write(one.switch, one.off)
-            device.write(one.value, before[one.value])
+    """Restores earlier values. Raises UnavailableError."""
+    for automatic in _AUTOMATICS:
+        was = before.get(automatic.switch)
+        if was in (None, automatic.off) and automatic.value in before:
+            device.write(automatic.switch, automatic.off)
+            device.write(automatic.value, before[automatic.value])
         if was is not None:
-            device.write(one.switch, was)
+            device.write(automatic.switch, was)
     for control in (Control.GAIN, Control.DYNAMIC_FRAMERATE, Control.POWER_LINE):
         if control in before:
             device.write(control, before[control])

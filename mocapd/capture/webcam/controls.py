@@ -1,7 +1,7 @@
 """Exposure, gain, white balance and focus of a webcam: set in the order that works, read back.
 
-What a driver answers to `set` means nothing (gain 999 is accepted and becomes 255), so the result
-tells what the camera holds now. Values survive reopening but not a replug: apply them at each
+A driver's answer to `set` is meaningless (gain 999 is accepted and becomes 255), so the result
+holds the values read back. Values survive reopening but not a replug: apply them at each
 opening.
 """
 
@@ -16,7 +16,7 @@ _EXPOSURE_AUTO = 3.0
 
 
 class HasProperties(Protocol):
-    """What is needed of cv2.VideoCapture."""
+    """The required part of cv2.VideoCapture."""
 
     def set(self, property_id: int, value: float) -> bool: ...
     def get(self, property_id: int) -> float: ...
@@ -24,12 +24,12 @@ class HasProperties(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Controls:
-    """What to set; None leaves the camera's own value.
+    """Control values; None leaves the camera's own value.
 
     `exposure` in the camera's unit (UVC: 100 us), `wb_temperature` [K], `gain` and `focus` without
     a unit. A value turns its automatic off, unless the automatic is asked for explicitly.
     `dynamic_framerate`: whether the camera may lower its rate in dim light; `power_line_hz`: the mains
-    whose flicker it filters, 50 or 60, 0 for none.
+    frequency of the flicker filter, 50 or 60, 0 for none.
     """
 
     auto_exposure: bool | None = None
@@ -53,20 +53,20 @@ class Controls:
 
 @dataclass(frozen=True, slots=True)
 class ControlResult:
-    """What was asked for and what the camera holds now; `got` is -1 when it has no such control."""
+    """A control's requested and actual value; `got` is -1 when the camera lacks the control."""
 
     name: str
     asked: float
     got: float
 
     @property
-    def applied(self) -> bool:
+    def is_applied(self) -> bool:
         return self.asked == self.got
 
 
 def control_steps(controls: Controls) -> tuple[tuple[str, int, float], ...]:
     """(name, cv2 property, value) in the order to set them: each automatic before its value."""
-    # the configuration names Controls, and whoever reads it need not have OpenCV
+    # imported here: the configuration uses Controls and must load without OpenCV
     import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
     import cv2
@@ -102,7 +102,7 @@ def control_steps(controls: Controls) -> tuple[tuple[str, int, float], ...]:
 
 
 def apply_controls(capture: HasProperties, controls: Controls) -> tuple[ControlResult, ...]:
-    """Set what is asked, then read everything back."""
+    """Sets all given controls, then reads them back."""
     steps = control_steps(controls)
     for _, number, value in steps:
         capture.set(number, value)

@@ -1,4 +1,4 @@
-"""Why a /dev/video node cannot be used, said so that it can be mended."""
+"""Checks whether a /dev/video node can be used; the errors say the cause and the fix."""
 
 import errno
 import grp
@@ -21,7 +21,7 @@ PROC = Path("/proc")
 
 @contextmanager
 def opened_node(node: Path) -> Iterator[int]:
-    """A file descriptor of the node, for questions only.
+    """A file descriptor of the node, for queries only.
 
     Raises UnavailableError (gone) or PermissionDeniedError (with the line that grants the right).
     """
@@ -36,7 +36,7 @@ def opened_node(node: Path) -> Iterator[int]:
 
 
 def check_usable(node: Path, fd: int) -> Capability:
-    """Raises UnavailableError when the node does not capture video or somebody streams from it."""
+    """Raises UnavailableError when the node does not capture video or is in use."""
     try:
         capability = query_capability(fd)
     except OSError as error:
@@ -85,8 +85,10 @@ def _group_fix(node: Path) -> str:
 
 
 def how_to_be_let_in(node: Path, gid: int) -> str:
-    """What gives this user a node that is of this group."""
-    if gid == 0:  # udev gives it to the group a moment after it came; nobody is to join root's
+    """The fix that gives this user access to a node of this group."""
+    if (
+        gid == 0
+    ):  # udev changes the group a moment after the node appears; never suggest to join root's group
         return f"wait a moment for udev; if it stays so: sudo chgrp video {node}"
     try:
         group = grp.getgrgid(gid).gr_name
@@ -104,7 +106,7 @@ def holders(node: Path, proc: Path = PROC) -> tuple[tuple[int, str], ...]:
 
     This process is left out: it has the node open to ask.
     """
-    found: list[tuple[int, str]] = []
+    users: list[tuple[int, str]] = []
     for process in proc.glob("[0-9]*"):
         try:
             held = any(link.readlink() == node for link in (process / "fd").iterdir())
@@ -112,12 +114,12 @@ def holders(node: Path, proc: Path = PROC) -> tuple[tuple[int, str], ...]:
         except OSError:  # another user's, or ended while we looked
             continue
         if held and int(process.name) != os.getpid():
-            found.append((int(process.name), command))
-    return tuple(sorted(found))
+            users.append((int(process.name), command))
+    return tuple(sorted(users))
 
 
 def _holders_text(node: Path) -> str:
-    found = holders(node)
-    if not found:
+    users = holders(node)
+    if not users:
         return "used by a process of another user, or already by this one"
-    return "used by " + ", ".join(f"pid {pid} ({command})" for pid, command in found)
+    return "used by " + ", ".join(f"pid {pid} ({command})" for pid, command in users)

@@ -1,4 +1,4 @@
-"""Which webcam is which: by USB port path and vid:pid:serial, never by /dev number.
+"""Identity of a webcam: USB port path and vid:pid:serial, never the /dev number.
 
 /dev/videoN changes with the order of plugging, and identical webcams share one by-id link. The
 port path (`1-3.2`: bus 1, socket 3, hub socket 2; as in sysfs) tells
@@ -31,7 +31,7 @@ class WebcamIdentity:
 
     @property
     def model(self) -> tuple[str, str, str]:
-        """What does not change with the socket: vid, pid, serial."""
+        """The part independent of the socket: vid, pid, serial."""
         return (self.vid, self.pid, self.serial)
 
 
@@ -66,29 +66,28 @@ def match_identity(
     present: Sequence[WebcamIdentity],
     others: Sequence[WebcamIdentity] = (),
 ) -> Match:
-    """Find `wanted` among the webcams that are `present`.
+    """Finds `wanted` among the webcams that are `present`.
 
-    The same model in the same socket is it. Else a single one of the same vid:pid:serial that no
-    other configured camera (`others`) owns is taken for the same camera, moved, unless a twin of it
-    that is configured too is away: it may be that one. Twins of which more than one could be meant
-    are refused: guessing would swap two calibrations. That twins were swapped in their own sockets
-    cannot be seen here: see service.identical_cameras.
-    Raises UnavailableError when it is absent, AmbiguousCameraError when it cannot be told.
+    An equal model in the same socket matches. Otherwise a single webcam with the same vid:pid:serial matches as moved,
+    unless another configured camera (`others`) owns it or a configured twin is absent: it may be that twin. Several
+    candidates are an error, as guessing would swap two calibrations. Twins swapped in their own sockets are
+    undetectable here: see service.identical_cameras.
+    Raises UnavailableError when it is absent, AmbiguousCameraError when several candidates remain.
     """
     if wanted in present:
         return Match(wanted, moved=False)
     owned = set(others)
-    moved = [one for one in present if one.model == wanted.model and one not in owned]
-    away = [one for one in others if one.model == wanted.model and one not in present]
+    moved = [webcam for webcam in present if webcam.model == wanted.model and webcam not in owned]
+    away = [twin for twin in others if twin.model == wanted.model and twin not in present]
     if len(moved) > 1:
-        ports = ", ".join(one.port_path for one in moved)
+        ports = ", ".join(webcam.port_path for webcam in moved)
         raise AmbiguousCameraError(
             f"{len(moved)} webcams with the same vid:pid:serial are in other sockets ({ports})",
             str(wanted),
             f"plug it into port {wanted.port_path} again, or name the one meant in the config",
         )
     if moved and away:
-        own = " and ".join(one.port_path for one in (wanted, *away))
+        own = " and ".join(webcam.port_path for webcam in (wanted, *away))
         raise AmbiguousCameraError(
             f"the webcam in port {moved[0].port_path} may be this one or its twin: they have the same vid:pid:serial",
             str(wanted),

@@ -1,7 +1,6 @@
-"""Hears from udev that a camera was plugged in, at the moment when its node has its rights.
+"""Reports udev's events of new cameras, once their nodes have their permissions.
 
-Whoever seeks a camera looks for it by itself too, four times a second: where there is no udev (a container, a small
-system) nothing is heard, and only that quarter of a second is lost.
+Without udev (a container, a small system) there are no events; capture threads poll four times a second anyway.
 """
 
 import logging
@@ -17,7 +16,7 @@ _SUBSYSTEM = "video4linux"
 
 
 class PlugEvents:
-    """Calls `heard` in a thread of its own from `start` to `stop`."""
+    """Calls `heard` at each event, in a thread of its own, from `start` to `stop`."""
 
     def __init__(self, heard: Callable[[], None]) -> None:
         self._heard = heard
@@ -25,11 +24,11 @@ class PlugEvents:
         self._end_fd = -1  # readable when the thread is to end
 
     def start(self) -> bool:
-        """Whether anything can be heard here."""
+        """Starts the thread; False without udev."""
         try:
             monitor = _monitor()
         except (ImportError, OSError) as error:  # no libudev; no netlink for this service
-            _log.debug("udev tells nothing here (%s): cameras are looked for by turns", error)
+            _log.debug("no udev events here (%s): cameras are polled", error)
             return False
         self._end_fd = os.eventfd(0)
         self._thread = threading.Thread(
@@ -39,7 +38,7 @@ class PlugEvents:
         return True
 
     def stop(self) -> None:
-        """Ends its thread; may be called twice, and when nothing can be heard."""
+        """Ends the thread; idempotent, also without udev."""
         thread, self._thread = self._thread, None
         if thread is not None:
             os.eventfd_write(self._end_fd, 1)
@@ -48,22 +47,22 @@ class PlugEvents:
 
     def _listen(self, monitor: Any, end_fd: int) -> None:
         """monitor: of pyudev, which has no types."""
-        while not _waited_for(monitor, end_fd):
+        while not _wait(monitor, end_fd):
             try:
                 while (device := monitor.poll(timeout=0)) is not None:
                     if device.action == "add":
                         self._heard()
-            except OSError as error:  # more came at once than its buffer takes, maybe a camera
-                _log.debug("udev's words were lost (%s): it is listened to anew", error)
+            except OSError as error:  # its buffer overflowed, an event of a camera may be lost
+                _log.debug("udev events were lost (%s): the monitor is restarted", error)
                 try:
                     monitor = _monitor()
                 except OSError:
-                    return  # cameras are looked for by turns
+                    return  # cameras are polled
                 self._heard()
 
 
 def _monitor() -> Any:
-    """Hears of webcams from now on. Raises ImportError or OSError."""
+    """Starts a monitor of webcam events. Raises ImportError or OSError."""
     import pyudev
 
     monitor = pyudev.Monitor.from_netlink(pyudev.Context(), source="udev")
@@ -72,8 +71,8 @@ def _monitor() -> Any:
     return monitor
 
 
-def _waited_for(monitor: Any, end_fd: int) -> bool:
-    """Returns when something is said, or with True when it is over."""
+def _wait(monitor: Any, end_fd: int) -> bool:
+    """Waits for an event; True when the thread is to end."""
     waiting = select.poll()
     for fd in (monitor.fileno(), end_fd):
         waiting.register(fd, select.POLLIN)

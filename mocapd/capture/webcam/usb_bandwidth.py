@@ -1,7 +1,7 @@
-"""Whether the webcams of one USB bus fit on it, by estimate, and which lower mode would.
+"""Estimates whether the webcams of a USB bus fit on it, and which lower mode would fit.
 
-A camera reserves its share of the bus when it begins to stream; the one that comes too late gets
-nothing. Reservations are not told anywhere, so they are estimated from what is asked for.
+A camera reserves bandwidth when it begins to stream; the last one may get none. The kernel does not report the
+reservations, so they are estimated from the requested modes.
 """
 
 import math
@@ -20,7 +20,7 @@ _USABLE: Mapping[int, float] = {12: 0.9e6, 480: 36e6, 5000: 320e6}
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """What a webcam is asked to send."""
+    """A requested mode of a webcam."""
 
     fourcc: str
     size_px: tuple[int, int]  # width, height
@@ -28,14 +28,14 @@ class Mode:
 
     @property
     def bytes_per_s(self) -> float:
-        """What it takes of the bus: YUYV has two bytes a pixel, MJPG about a fifth of that."""
+        """Bandwidth on the bus: YUYV has two bytes a pixel, MJPG about a fifth of that."""
         share = _JPEG_SHARE if self.fourcc == "MJPG" else 1.0
         return 2.0 * share * self.size_px[0] * self.size_px[1] * self.fps_hz
 
 
 @dataclass(frozen=True, slots=True)
 class CrowdedBus:
-    """A bus that is asked for more than it has. `cameras`: names, in the order given."""
+    """An overloaded bus. `cameras`: names, in the order given."""
 
     bus: str
     cameras: tuple[str, ...]
@@ -44,7 +44,7 @@ class CrowdedBus:
 
 
 def usable_bytes_per_s(port_path: str, sysfs: Path = SYSFS) -> float:
-    """What webcams can have together of the bus that this port belongs to; USB 2's when unknown."""
+    """The bandwidth for all webcams of this port's bus; that of USB 2 when unknown."""
     try:
         text = (sysfs / "bus/usb/devices" / port_path / "speed").read_text(encoding="ascii")
         speed = float(text)
@@ -58,17 +58,17 @@ def usable_bytes_per_s(port_path: str, sysfs: Path = SYSFS) -> float:
 def crowded_buses(
     cameras: Mapping[str, tuple[str, Mode]], sysfs: Path = SYSFS
 ) -> tuple[CrowdedBus, ...]:
-    """The buses that do not carry what is asked for: by camera name, its port path and its mode."""
+    """The overloaded buses. cameras: port path and mode by camera name."""
     by_bus: dict[str, list[str]] = {}
     for name, (port_path, _mode) in cameras.items():
         by_bus.setdefault(port_path.partition("-")[0], []).append(name)
-    found = []
+    crowded = []
     for bus, names in by_bus.items():
         asked = sum(cameras[name][1].bytes_per_s for name in names)
         usable = min(usable_bytes_per_s(cameras[name][0], sysfs) for name in names)
         if asked > usable:
-            found.append(CrowdedBus(bus, tuple(names), asked, usable))
-    return tuple(found)
+            crowded.append(CrowdedBus(bus, tuple(names), asked, usable))
+    return tuple(crowded)
 
 
 def lower_mode(
@@ -79,12 +79,12 @@ def lower_mode(
     MJPG where there is any, as the camera will be opened with it. The best has the most of
     sqrt(pixels) times rate; of equals, the faster. Under 320x240 or 10 Hz nothing is tracked.
     """
-    fourcc = "MJPG" if any(one.fourcc == "MJPG" for one in formats) else "YUYV"
+    fourcc = "MJPG" if any(format_.fourcc == "MJPG" for format_ in formats) else "YUYV"
     fitting = [
         mode
-        for one in formats
-        if one.fourcc == fourcc and one.size_px[0] >= 320 and one.size_px[1] >= 240
-        for mode in (Mode(fourcc, one.size_px, rate_hz) for rate_hz in one.rates_hz)
+        for format_ in formats
+        if format_.fourcc == fourcc and format_.size_px[0] >= 320 and format_.size_px[1] >= 240
+        for mode in (Mode(fourcc, format_.size_px, rate_hz) for rate_hz in format_.rates_hz)
         if mode.bytes_per_s <= budget_bytes_per_s
         and 10.0 <= mode.fps_hz <= asked.fps_hz + 0.5
         and mode.size_px[0] <= asked.size_px[0]

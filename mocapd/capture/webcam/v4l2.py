@@ -1,4 +1,4 @@
-"""A webcam through OpenCV and V4L2, opened by identity and let go at the first failure."""
+"""A webcam through OpenCV and V4L2, opened by identity and released at the first failure."""
 
 import logging
 from contextlib import ExitStack
@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from cv2.typing import MatLike
 
-from mocapd.boundary.pictures import decode_camera_picture
+from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import Openings
 from mocapd.capture.pixels import delivered_jpeg, frozen_pixels
@@ -39,7 +39,7 @@ _YUYV = "YUYV"
 
 @dataclass(frozen=True, slots=True)
 class WebcamSettings:
-    """What to ask of a webcam. `size_px` (width, height) must be got: the calibration belongs to it."""
+    """Requested mode of a webcam. `size_px` (width, height) is mandatory: the calibration depends on it."""
 
     size_px: tuple[int, int] = (640, 480)
     fps_hz: float = 30.0
@@ -48,7 +48,7 @@ class WebcamSettings:
 
 @dataclass(frozen=True, slots=True)
 class NegotiatedFormat:
-    """What the webcam says after opening; everything is read back, nothing assumed."""
+    """The actual mode after opening, all of it read back."""
 
     node: Path
     moved: bool  # found by vid:pid:serial in another socket than configured
@@ -60,7 +60,7 @@ class NegotiatedFormat:
 
 
 class V4l2Source:
-    """One webcam, named by its USB identity or (what is not on USB) by its node.
+    """One webcam, addressed by its USB identity or (off USB) by its node.
 
     `others`: identities of the other configured webcams, which are never taken for this one.
     `torn` counts frames that came damaged and were left out; each is a gap in `seq`.
@@ -182,7 +182,7 @@ class V4l2Source:
         raise CameraLost("was unplugged", where, "plug it in again")
 
     def close(self) -> None:
-        """Let go; a blocked `read` ends after the stall timeout of `environment` at the latest."""
+        """Closes the webcam; a blocked `read` ends after the stall timeout of `environment` at the latest."""
         self._openings.close()
 
     def plugging(self) -> str:
@@ -226,9 +226,9 @@ class V4l2Source:
             _LOG.warning(
                 "%s: asked for %g Hz, was given %g Hz", self.name, self._settings.fps_hz, got.fps_hz
             )
-        for one in got.controls:
-            if not one.applied:
-                _LOG.warning("%s: %s is %g, asked for %g", self.name, one.name, one.got, one.asked)
+        for c in got.controls:
+            if not c.is_applied:
+                _LOG.warning("%s: %s is %g, asked for %g", self.name, c.name, c.got, c.asked)
 
 
 def _other_mode(one: WebcamSettings, other: WebcamSettings) -> bool:

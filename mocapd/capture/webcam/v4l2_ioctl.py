@@ -1,4 +1,4 @@
-"""What OpenCV cannot ask of V4L2: capabilities, formats, rates, who streams, and controls with their range.
+"""V4L2 queries that OpenCV lacks: capabilities, formats, rates, use by other programs, ranges of controls.
 
 Layouts are those of <linux/videodev2.h>, the same on all 64-bit Linux machines.
 """
@@ -53,7 +53,7 @@ class Capability:
 
 @dataclass(frozen=True, slots=True)
 class PixelFormat:
-    """One format at one size. `rates_hz` is empty where the driver only tells a range."""
+    """One format at one size. `rates_hz` is empty where the driver reports only a range."""
 
     fourcc: str
     size_px: tuple[int, int]  # width, height
@@ -62,7 +62,7 @@ class PixelFormat:
 
 @dataclass(frozen=True, slots=True)
 class ControlRange:
-    """What values a control takes: `low` to `high` in steps."""
+    """Permitted values of a control: `low` to `high` in steps."""
 
     low: int
     high: int
@@ -91,9 +91,9 @@ def enumerate_formats(fd: int) -> tuple[PixelFormat, ...]:
 
 
 def is_streaming_elsewhere(fd: int) -> bool:
-    """Whether another process streams from this node.
+    """True if another process streams from this node.
 
-    Asks for zero buffers, which changes nothing and is refused (EBUSY) while somebody streams.
+    Asks for zero buffers, which changes nothing and is refused (EBUSY) during streaming.
     """
     nothing = _REQBUFS.pack(0, _BUF_TYPE_VIDEO_CAPTURE, _MEMORY_MMAP, 0, 0)
     try:

@@ -1,4 +1,4 @@
-"""Webcams as kinds of source: named by their USB identity, or (what is not on USB) by their node."""
+"""Webcams as kinds of source: addressed by USB identity, or (off USB) by node."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What cameras this machine has, and for each that cannot be used the reason (`mocapd cameras`)."""
+"""Lists the cameras of this machine, with the reason for each unusable one (`mocapd cameras`)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -22,9 +22,8 @@ class CameraInfo:
     """One V4L2 node, or (`node` None) a USB webcam that no driver has taken.
 
     `spec`: what to write into the config, a `usb:` identity where there is one. `formats`: MJPG
-    first. `problem`: empty when it can be used, else what is wrong; `fix`: how to mend it. `note`:
-    something to know of a camera that can be used. `captures`: whether it is a camera's own node; its
-    metadata node is not.
+    first. `problem`: why it is unusable, empty otherwise; `fix`: of the problem. `note`: a remark on a
+    usable camera. `captures`: False for a metadata node.
     """
 
     node: Path | None
@@ -61,7 +60,7 @@ def list_cameras(
     nodes = video_nodes(sysfs, dev)
     taken = {node.identity.port_path for node in nodes if node.identity}
     rows = [_node_info(node) for node in nodes]
-    rows += [_without_node(one) for one in usb() if one.identity.port_path not in taken]
+    rows += [_without_node(webcam) for webcam in usb() if webcam.identity.port_path not in taken]
     return tuple(_with_twin_note(row, rows) for row in rows)
 
 
@@ -69,13 +68,15 @@ def _node_info(node: VideoNode) -> CameraInfo:
     spec = str(node.identity) if node.identity and node.index == 0 else str(node.node)
     formats: tuple[PixelFormat, ...] = ()
     problem = fix = note = ""
-    captures = node.index == 0 or node.identity is None  # a guess, until the node tells
+    captures = node.index == 0 or node.identity is None  # a guess, until the node answers
     try:
         with opened_node(node.node) as fd:
             captures = _captures(fd, captures)
-            formats = tuple(sorted(enumerate_formats(fd), key=lambda one: one.fourcc != "MJPG"))
+            formats = tuple(
+                sorted(enumerate_formats(fd), key=lambda format_: format_.fourcc != "MJPG")
+            )
             check_usable(node.node, fd)
-        fourccs = {one.fourcc for one in formats}
+        fourccs = {format_.fourcc for format_ in formats}
         if "MJPG" not in fourccs and "YUYV" in fourccs:
             note = "YUYV only, no MJPG: it fills a USB 2 bus; expect low rates and one such camera"
         elif "MJPG" not in fourccs:
@@ -93,7 +94,7 @@ def _node_info(node: VideoNode) -> CameraInfo:
 def _captures(fd: int, guess: bool) -> bool:
     try:
         return bool(query_capability(fd).caps & CAP_VIDEO_CAPTURE)
-    except OSError:  # `check_usable` tells what is wrong
+    except OSError:  # `check_usable` reports the cause
         return guess
 
 
@@ -110,8 +111,8 @@ def _without_node(webcam: UsbWebcam) -> CameraInfo:
 
 
 def _with_twin_note(row: CameraInfo, rows: list[CameraInfo]) -> CameraInfo:
-    """Webcams of one vid:pid:serial can only be told apart by their sockets: say so."""
-    ports = {one.port_path for one in rows if row.identity and one.usb_id == row.usb_id}
+    """Adds a note to twins: only their sockets distinguish webcams of one vid:pid:serial."""
+    ports = {other.port_path for other in rows if row.identity and other.usb_id == row.usb_id}
     if len(ports) < 2 or row.note or row.problem:
         return row
     return replace(row, note="has a twin with the same vid:pid:serial: keep each in its USB port")

@@ -48,7 +48,7 @@ def _usb_device(device: Path) -> tuple[Path, str] | None:
 
 
 def usb_identity(folder: Path) -> WebcamIdentity:
-    """The identity of the USB device whose sysfs folder (named by its port path) this is."""
+    """The identity of a USB device. folder: its sysfs folder, named by its port path."""
     return WebcamIdentity(
         port_path=folder.name,
         vid=attribute(folder / "idVendor").lower(),
@@ -59,7 +59,7 @@ def usb_identity(folder: Path) -> WebcamIdentity:
 
 def video_nodes(sysfs: Path = SYSFS, dev: Path = DEV) -> tuple[VideoNode, ...]:
     """All V4L2 nodes, in the order of their numbers, metadata nodes included."""
-    found: list[tuple[int, VideoNode]] = []
+    nodes: list[tuple[int, VideoNode]] = []
     for entry in (sysfs / "class" / "video4linux").glob("video*"):
         number = entry.name.removeprefix("video")
         if not number.isdigit():
@@ -73,17 +73,17 @@ def video_nodes(sysfs: Path = SYSFS, dev: Path = DEV) -> tuple[VideoNode, ...]:
             interface=usb[1] if usb else "",
             identity=usb_identity(usb[0]) if usb else None,
         )
-        found.append((int(number), node))
-    return tuple(node for _, node in sorted(found, key=lambda pair: pair[0]))
+        nodes.append((int(number), node))
+    return tuple(node for _, node in sorted(nodes, key=lambda pair: pair[0]))
 
 
 def capture_nodes(sysfs: Path = SYSFS, dev: Path = DEV) -> dict[WebcamIdentity, VideoNode]:
     """The node that captures, of each USB webcam: index 0 of its first interface that has nodes."""
-    nodes = [one for one in video_nodes(sysfs, dev) if one.identity and one.index == 0]
+    nodes = [node for node in video_nodes(sysfs, dev) if node.identity and node.index == 0]
     first: dict[WebcamIdentity, VideoNode] = {}
-    for one in sorted(nodes, key=lambda node: node.interface):
-        if one.identity is not None:
-            first.setdefault(one.identity, one)
+    for node in sorted(nodes, key=lambda node: node.interface):
+        if node.identity is not None:
+            first.setdefault(node.identity, node)
     return first
 
 
@@ -93,7 +93,7 @@ def find_webcam(
     sysfs: Path = SYSFS,
     dev: Path = DEV,
 ) -> tuple[Match, Path]:
-    """Where the wanted webcam is at this moment, and its /dev node. Raises UnavailableError."""
+    """Finds a webcam: its match and its /dev node. Raises UnavailableError."""
     nodes = capture_nodes(sysfs, dev)
     match = match_identity(wanted, tuple(nodes), others)
     node = nodes[match.identity].node

@@ -37,13 +37,13 @@ def doctor(
     from mocapd.doctor.examination import examine
     from mocapd.doctor.facts import FactTrouble
     from mocapd.doctor.finding import Verdict
-    from mocapd.doctor.gathering.gathering import gathered
+    from mocapd.doctor.gathering.gathering import gather_facts
 
     trouble = None
     if error is not None:
         where = f"{error.where}: " if error.where else ""
         trouble = FactTrouble(f"{where}{error.what}", error.fix)
-    findings = examine(gathered(effective, trouble))
+    findings = examine(gather_facts(effective, trouble))
     print("\n".join(map(_as_json, findings)) if as_json else _as_text(findings))
     raise typer.Exit(int(any(one.verdict is Verdict.BAD for one in findings)))
 

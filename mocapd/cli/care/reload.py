@@ -19,9 +19,9 @@ def reload(config: ConfigOption = None, settings: SetOption = None) -> None:
 
     Example: mocapd reload
     """
-    from mocapd.control.meant import daemon_meant
+    from mocapd.control.target_process import target_daemon
 
-    daemon = daemon_meant(config_to_look_after(config, settings)[0].config)
+    daemon = target_daemon(config_to_look_after(config, settings)[0].config)
     done = daemon.reload()
     print(f"{daemon.instance}: taken up, {done.gap_s:.2f} s without a frame")
     if done.waiting:

@@ -48,7 +48,7 @@ def status(
     Example: mocapd status --json | jq .state
     """
     from mocapd.app.terminal.status_text import status_lines
-    from mocapd.control.meant import daemons_found, meant, why_none
+    from mocapd.control.target_process import find_daemons, no_daemon_error, select_targets
 
     effective, error = config_to_look_after(config, settings)
     chosen = effective.config
@@ -56,12 +56,12 @@ def status(
         from mocapd.outputs.output_table import zenoh_section
 
         raise typer.Exit(_print_all(link_of(zenoh_section(chosen.outputs), endpoint), as_json))
-    found = daemons_found(chosen)
-    reports = [one.status for one in meant(found.daemons, chosen)]
+    found = find_daemons(chosen)
+    reports = [one.status for one in select_targets(found.daemons, chosen)]
     for report in reports:
         print(_as_json(report) if as_json else "\n".join(status_lines(report)))
     if not reports:
-        typer.echo(f"mocapd: {why_none(found)}", err=True)
+        typer.echo(f"mocapd: {no_daemon_error(found)}", err=True)
         raise typer.Exit(UNKNOWN if found.silent or found.foreign else NOT_RUNNING)
     if error is not None:
         typer.echo(f"mocapd: the next start or reload will not do: {error}", err=True)

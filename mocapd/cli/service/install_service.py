@@ -50,16 +50,16 @@ def install_service(
     """
     from mocapd.app.install.installing import (
         InstallTarget,
+        changed_files_hint,
         hidden_hint,
         install,
-        kept_hint,
         next_steps,
     )
 
     target = InstallTarget(user, root, python, dry_run)
     done = install(target)
     _print(done, dry_run)
-    _print_hint(kept_hint(done))
+    _print_hint(changed_files_hint(done))
     _print_hint(hidden_hint(target))
     steps = next_steps(target, done)
     if steps:

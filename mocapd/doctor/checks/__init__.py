@@ -1,1 +1,1 @@
-"""What is judged: functions of gathered facts, which ask nothing of the machine themselves."""
+"""Checks: pure functions of gathered facts."""

@@ -1,4 +1,4 @@
-"""The calibration: there, readable, not too old, and good enough."""
+"""Check of the calibration: present, readable, recent, and accurate."""
 
 from mocapd.doctor.facts import CalibrationFacts
 from mocapd.doctor.finding import Finding, bad, ok, warn
@@ -11,22 +11,23 @@ _ROOM = "mocapd calibrate --step room"
 
 
 def check_calibration(facts: CalibrationFacts) -> Finding:
-    """What a daemon that is started now would track with."""
+    """Checks the calibration that a new daemon would use."""
     about = "calibration"
     if facts.trouble is not None:
         return bad(about, f"{facts.path}: {facts.trouble.what}", facts.trouble.fix)
     if facts.path is None:
         return warn(about, "none is saved", "mocapd calibrate")
     days = int(facts.age_s / 86400.0)
-    told = (
+    summary = (
         f"{facts.path}: {facts.cameras} camera{'s' if facts.cameras > 1 else ''}, {days} days old"
     )
-    told += f", {facts.rms_px:.2f} px" if facts.rms_px is not None else ""
-    told += f", {facts.play_area_cm:.1f} cm" if facts.play_area_cm is not None else ""
+    summary += f", {facts.rms_px:.2f} px" if facts.rms_px is not None else ""
+    summary += f", {facts.play_area_cm:.1f} cm" if facts.play_area_cm is not None else ""
     if facts.age_s < -86400.0:
         return warn(about, f"{facts.path} is of the future", "set the clock: timedatectl")
     if (facts.rms_px or 0.0) > POOR_PX or (facts.play_area_cm or 0.0) > POOR_CM:
-        return warn(about, f"{told}: it fits badly", _ROOM)
+        return warn(about, f"{summary}: it fits badly", _ROOM)
     if facts.age_s > OLD_S:
-        return warn(about, f"{told}: it is old", f"{_ROOM}, and --step colour if the lamps changed")
-    return ok(about, told)
+        fix = f"{_ROOM}, and --step colour if the lamps changed"
+        return warn(about, f"{summary}: it is old", fix)
+    return ok(about, summary)

@@ -1,4 +1,4 @@
-"""Rights, webcams, and whether their USB buses carry them."""
+"""Checks of permissions, webcams, and USB bandwidth."""
 
 from collections.abc import Iterator, Sequence
 
@@ -14,17 +14,17 @@ GROUP = "video"
 
 
 def check_rights(user: UserFacts, cameras: CameraFacts) -> Iterator[Finding]:
-    """Whether this user may open webcams. That a node can be opened goes before any group: who sits at the screen is
-    let in by name."""
-    told = any("no permission" in one.problem for one in cameras.nodes)
-    usable = any(one.usable for one in cameras.nodes)
+    """Checks that this user may open webcams. An openable node overrides the group: a user at the console has access by
+    an ACL."""
+    is_refused = any("no permission" in node.problem for node in cameras.nodes)
+    usable = any(node.usable for node in cameras.nodes)
     if user.is_root or GROUP in user.groups:
-        who = "is root" if user.is_root else f"is in the group {GROUP}"
-        yield ok("rights", f"{user.name} {who}")
-    elif usable and not told:
+        reason = "is root" if user.is_root else f"is in the group {GROUP}"
+        yield ok("rights", f"{user.name} {reason}")
+    elif usable and not is_refused:
         yield ok("rights", f"{user.name} may open the webcams without the group {GROUP}")
     elif user.has_video_group:
-        yield (bad if told else warn)(
+        yield (bad if is_refused else warn)(
             "rights",
             f"{user.name} is not in the group {GROUP}",
             f"sudo usermod -aG {GROUP} {user.name}, then log in again",
@@ -38,47 +38,47 @@ def check_rights(user: UserFacts, cameras: CameraFacts) -> Iterator[Finding]:
 
 
 def check_webcams(facts: CameraFacts, daemons: Sequence[StatusReport]) -> Iterator[Finding]:
-    """Each that is plugged in, and each that is wanted and is not."""
-    cameras = [one for one in facts.nodes if one.captures]
-    for one in cameras:
-        yield _webcam(one, _user_of(one, facts.nodes, daemons))
-    wanted = [one for one in facts.asked if is_settable(one.source)]
+    """Checks each plugged webcam, and reports configured ones that are absent."""
+    cameras = [node for node in facts.nodes if node.captures]
+    for camera in cameras:
+        yield _webcam(camera, _user_of(camera, facts.nodes, daemons))
+    wanted = [draft for draft in facts.asked if is_settable(draft.source)]
     if not cameras and not wanted:
         yield warn(
             "webcam", "none is plugged in", "plug one in, or see `mocapd demo`; `lsusb` shows it?"
         )
-    for camera in wanted:
-        if node_of(camera, facts.nodes) is None:
+    for draft in wanted:
+        if node_of(draft, facts.nodes) is None:
             yield bad(
                 "webcam",
-                f"{camera.id} ({camera.source}) is not plugged in",
+                f"{draft.id} ({draft.source}) is not plugged in",
                 "plug it in, or `mocapd cameras` and correct its source",
             )
 
 
-def _webcam(one: CameraInfo, user: str) -> Finding:
-    name = f"{one.node or '(no node)'} {one.name}"
+def _webcam(webcam: CameraInfo, user: str) -> Finding:
+    name = f"{webcam.node or '(no node)'} {webcam.name}"
     if user:
         return ok("webcam", f"{name}: in use by {user}")
-    if one.problem:
-        return bad("webcam", f"{name}: {one.problem}", one.fix)
-    if one.note:
-        return warn("webcam", f"{name}: {one.note}", "see `mocapd cameras`")
+    if webcam.problem:
+        return bad("webcam", f"{name}: {webcam.problem}", webcam.fix)
+    if webcam.note:
+        return warn("webcam", f"{name}: {webcam.note}", "see `mocapd cameras`")
     return ok("webcam", name)
 
 
 def _user_of(node: CameraInfo, nodes: Sequence[CameraInfo], daemons: Sequence[StatusReport]) -> str:
-    """The daemon that streams from it; empty when none does."""
+    """The daemon that streams from a node; empty without one."""
     for daemon in daemons:
-        for one in daemon.cameras:
-            draft = DraftCamera(one.id, one.source, (640, 480), 30.0)
-            if one.state == "live" and node_of(draft, nodes) is node:
+        for camera in daemon.cameras:
+            draft = DraftCamera(camera.id, camera.source, (640, 480), 30.0)
+            if camera.state == "live" and node_of(draft, nodes) is node:
                 return f"the running {daemon.instance}"
     return ""
 
 
 def check_bandwidth(facts: CameraFacts) -> Iterator[Finding]:
-    """Buses that are asked for more than they have, by estimate."""
+    """Checks the estimated load of the USB buses."""
     for bus in facts.crowded:
         yield warn(
             "usb",
@@ -87,6 +87,6 @@ def check_bandwidth(facts: CameraFacts) -> Iterator[Finding]:
             "plug one into a port of another USB controller (`lsusb -t`), lower its fps_hz, or, if it asks for more"
             " than it sends: sudo modprobe -r uvcvideo; sudo modprobe uvcvideo quirks=128",
         )
-    on_usb = [one for one in facts.asked if node_of(one, facts.nodes) is not None]
+    on_usb = [draft for draft in facts.asked if node_of(draft, facts.nodes) is not None]
     if on_usb and not facts.crowded:
-        yield ok("usb", f"its buses carry {' and '.join(one.id for one in on_usb)}")
+        yield ok("usb", f"its buses carry {' and '.join(draft.id for draft in on_usb)}")

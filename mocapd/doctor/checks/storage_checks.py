@@ -1,4 +1,4 @@
-"""Folders: private, writable, with room; and the ports that are wanted."""
+"""Checks of folders (private, writable, free space) and of ports."""
 
 from collections.abc import Iterator, Sequence
 
@@ -12,7 +12,7 @@ _SMALL_FILES_BYTES = 1 << 20
 
 
 def check_folder(facts: FolderFacts) -> Finding:
-    """Whether what is kept there can be, and by us alone."""
+    """Checks that the folder is writable, private and has free space."""
     about = f"folder {facts.key}"
     if facts.trouble is not None:
         return bad(about, f"{facts.path}: {facts.trouble.what}", facts.trouble.fix)
@@ -34,19 +34,19 @@ def check_folder(facts: FolderFacts) -> Finding:
 
 
 def check_ports(ports: Sequence[PortFacts], daemons: Sequence[StatusReport]) -> Iterator[Finding]:
-    """Whether a daemon that is started now could have them."""
-    own = {str(one.pid) for one in daemons}
-    for one in ports:
-        about = f"port {one.port}"
-        if not one.holder:
-            yield ok(about, f"free for {one.key}")
-        elif any(f"(pid {pid})" in one.holder for pid in own):
-            yield ok(about, f"{one.key} of the running daemon")
+    """Checks that the ports are free for a new daemon."""
+    own = {str(daemon.pid) for daemon in daemons}
+    for port in ports:
+        about = f"port {port.port}"
+        if not port.holder:
+            yield ok(about, f"free for {port.key}")
+        elif any(f"(pid {pid})" in port.holder for pid in own):
+            yield ok(about, f"{port.key} of the running daemon")
         else:
             yield bad(
                 about,
-                f"{one.holder} has it, and {one.key} wants it",
-                f"end that program, or set {one.key} to another",
+                f"{port.holder} has it, and {port.key} wants it",
+                f"end that program, or set {port.key} to another",
             )
 
 

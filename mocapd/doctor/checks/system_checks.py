@@ -1,4 +1,4 @@
-"""Configuration, running daemons, whose they are, processor, clock, Python and its libraries."""
+"""Checks of configuration, running daemons and their owners, processor, clock, Python and its libraries."""
 
 from collections.abc import Iterator, Sequence
 
@@ -22,32 +22,32 @@ _QUICK_DRIVERS = ("intel_pstate", "amd-pstate-epp")
 
 
 def check_config(facts: ConfigFacts) -> Finding:
-    """Whether it can be read."""
+    """Checks that the configuration is valid."""
     if facts.trouble is not None:
         return bad("config", facts.trouble.what, facts.trouble.fix)
     return ok("config", str(facts.file) if facts.file else "no file: what is built in")
 
 
 def check_daemons(daemons: Sequence[StatusReport]) -> Iterator[Finding]:
-    """Those that run, and how they fare."""
+    """Reports the running daemons and their troubles."""
     if not daemons:
         yield ok("daemon", "none of yours is running")
-    for one in daemons:
-        told = f"{one.instance} (pid {one.pid}) is running"
-        if one.state == "blind":
-            yield bad("daemon", f"{told}: no camera delivers", "mocapd status")
-        elif one.slowness:
-            what, _, fix = one.slowness.partition(" -- ")
-            yield bad("daemon", f"{told}: {what}", fix)
-        elif one.effort in EFFORT_TROUBLE:
-            what, fix = EFFORT_TROUBLE[one.effort]
-            yield warn("daemon", f"{told}: {what}", fix)
+    for daemon in daemons:
+        name = f"{daemon.instance} (pid {daemon.pid}) is running"
+        if daemon.state == "blind":
+            yield bad("daemon", f"{name}: no camera delivers", "mocapd status")
+        elif daemon.slowness:
+            what, _, fix = daemon.slowness.partition(" -- ")
+            yield bad("daemon", f"{name}: {what}", fix)
+        elif daemon.effort in EFFORT_TROUBLE:
+            what, fix = EFFORT_TROUBLE[daemon.effort]
+            yield warn("daemon", f"{name}: {what}", fix)
         else:
-            yield ok("daemon", told)
+            yield ok("daemon", name)
 
 
-def check_whose(user: UserFacts, states: StateFacts) -> Iterator[Finding]:
-    """Whether root looks at its own things where a service is meant."""
+def check_ownership(user: UserFacts, states: StateFacts) -> Iterator[Finding]:
+    """Warns root, who examines its own folders, about services with folders of their own."""
     if user.is_root and states.of_services:
         theirs = ", ".join(map(str, states.of_services))
         yield warn(
@@ -59,7 +59,7 @@ def check_whose(user: UserFacts, states: StateFacts) -> Iterator[Finding]:
 
 
 def check_processor(facts: ProcessorFacts) -> Iterator[Finding]:
-    """Cores, and whether they are kept slow."""
+    """Checks the number of cores and their frequency governor."""
     if facts.cores < FEWEST_CORES:
         yield warn(
             "processor",
@@ -70,31 +70,34 @@ def check_processor(facts: ProcessorFacts) -> Iterator[Finding]:
     if slow and not facts.driver.startswith(_QUICK_DRIVERS):
         yield warn(
             "processor",
-            f"{slow} cores are kept at their lowest frequency (governor powersave)",
+            f"{slow} cores stay at their lowest frequency (governor powersave)",
             "sudo cpupower frequency-set -g schedutil",
         )
     elif facts.cores >= FEWEST_CORES:
-        kinds = ", ".join(sorted(facts.governors)) or "no governor is told"
+        kinds = ", ".join(sorted(facts.governors)) or "no governor is reported"
         yield ok("processor", f"{facts.cores} cores ({kinds})")
 
 
 def check_clock(facts: ClockFacts) -> Finding:
-    """Frames carry the wall clock's time besides the monotonic one; ages of files are told by it."""
+    """Checks the wall clock, which stamps frames and files."""
     if facts.now_unix_s < facts.built_unix_s - 86400.0:
         return bad("clock", "it is earlier than mocapd itself", "sudo timedatectl set-ntp true")
     if facts.synchronised is False:
         return warn(
             "clock",
-            "it is not synchronised: cameras and games of other machines are told wrong times",
+            "it is not synchronised: cameras and games of other machines get wrong times",
             "sudo timedatectl set-ntp true",
         )
-    return ok("clock", "synchronised" if facts.synchronised else "plausible; nobody tells more")
+    return ok(
+        "clock",
+        "synchronised" if facts.synchronised else "plausible; its synchronisation is not reported",
+    )
 
 
 def check_libraries(facts: LibraryFacts) -> Iterator[Finding]:
-    """Whether everything can be imported."""
+    """Checks that all libraries can be imported."""
     for name, why in facts.broken.items():
-        yield bad("library", f"{name}: {why}", f"install it anew: {reinstall_command()}")
+        yield bad("library", f"{name}: {why}", f"reinstall it: {reinstall_command()}")
     versions = ", ".join(f"{name} {version}" for name, version in facts.versions.items())
     yield ok("python", f"{facts.python}; {versions}")
     if facts.wants_vrchat and facts.vrchat_fix:
@@ -109,7 +112,7 @@ def check_libraries(facts: LibraryFacts) -> Iterator[Finding]:
 
 
 def check_preparation(facts: PreparationFacts) -> Finding:
-    """Whether the next start takes seconds."""
+    """Checks that the caches are warm, so that a start takes seconds."""
     about = "first start"
     if facts.done:
         return ok(about, "kernels and pose database are prepared: a start takes seconds")

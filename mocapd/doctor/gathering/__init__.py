@@ -1,1 +1,1 @@
-"""What is asked of the machine: facts, and no judgement on them."""
+"""Gathers facts of the machine without judging them."""

@@ -1,4 +1,4 @@
-"""The calibration that a daemon of this configuration would track with."""
+"""Facts of the calibration that a daemon of this configuration would use."""
 
 import time
 from datetime import UTC
@@ -12,7 +12,7 @@ from mocapd.geometry.rig_file import load_rig
 
 
 def calibration_facts(config: Config) -> tuple[CalibrationFacts, LoadedCalibration | None]:
-    """With the calibration itself, where one is saved and can be read."""
+    """The facts, and the calibration if one is saved and readable."""
     place = config.rig if config.rig is not None else config.state_dir / FILE_NAME
     try:
         saved = find_calibration(config.rig, config.state_dir, config.sources)
@@ -23,7 +23,7 @@ def calibration_facts(config: Config) -> tuple[CalibrationFacts, LoadedCalibrati
     if saved is None:
         return CalibrationFacts(None), None
     made, room = saved.tables.made.when, saved.tables.room
-    assert room is not None  # one that is not placed is refused when it is read
+    assert room is not None  # reading refuses a calibration without extrinsics
     when = made if made.tzinfo else made.replace(tzinfo=UTC)
     facts = CalibrationFacts(
         saved.path,
@@ -36,7 +36,7 @@ def calibration_facts(config: Config) -> tuple[CalibrationFacts, LoadedCalibrati
 
 
 def _of_rig_file(path: Path) -> CalibrationFacts:
-    """A rig in the capture format says nothing of its age but the file's own. Raises MocapdError."""
+    """Facts of a rig in the capture format; its age is the file's. Raises MocapdError."""
     rig = load_rig(path)
     return CalibrationFacts(
         path, age_s=time.time() - path.stat().st_mtime, cameras=len(rig.cameras)

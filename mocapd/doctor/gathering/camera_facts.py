@@ -1,4 +1,4 @@
-"""The machine's webcams, and those that are wanted."""
+"""Facts of the machine's webcams and of the configured cameras."""
 
 from collections.abc import Sequence
 
@@ -14,25 +14,27 @@ from mocapd.wizard.draft import DraftCamera
 
 
 def camera_facts(config: Config, saved: LoadedCalibration | None) -> CameraFacts:
-    """Opens each node for questions, streams from none."""
+    """The facts; queries each node, streams from none."""
     nodes, asked = list_cameras(), wanted_cameras(config, saved)
-    return CameraFacts(nodes, asked, _crowded(asked, nodes))
+    return CameraFacts(nodes, asked, _overloaded_buses(asked, nodes))
 
 
 def wanted_cameras(config: Config, saved: LoadedCalibration | None) -> tuple[DraftCamera, ...]:
-    """Those of the configuration, else of the calibration; addresses without their passwords."""
-    sizes = {one.id: one.size_px for one in saved.tables.camera} if saved else {}
-    found = [(one.id, one.source, one.fps_hz) for one in config.camera]
-    if not found and saved is not None:
-        found = [(one.id, one.source, one.fps_hz) for one in saved.tables.camera]
+    """Cameras of the configuration, else of the calibration; addresses without passwords."""
+    sizes = {camera.id: camera.size_px for camera in saved.tables.camera} if saved else {}
+    cameras = [(camera.id, camera.source, camera.fps_hz) for camera in config.camera]
+    if not cameras and saved is not None:
+        cameras = [(camera.id, camera.source, camera.fps_hz) for camera in saved.tables.camera]
     usual_px = WebcamSettings().size_px
     return tuple(
         DraftCamera(name, without_password(source), sizes.get(name, usual_px), fps_hz)
-        for name, source, fps_hz in found
+        for name, source, fps_hz in cameras
     )
 
 
-def _crowded(cameras: Sequence[DraftCamera], nodes: Sequence[CameraInfo]) -> tuple[CrowdedBus, ...]:
+def _overloaded_buses(
+    cameras: Sequence[DraftCamera], nodes: Sequence[CameraInfo]
+) -> tuple[CrowdedBus, ...]:
     on_usb = {}
     for camera in cameras:
         node = node_of(camera, nodes)

@@ -1,4 +1,4 @@
-"""The folders in which mocapd keeps things: rights and room."""
+"""Facts of mocapd's folders: permissions and free space."""
 
 import os
 import shutil
@@ -13,11 +13,11 @@ from mocapd.errors import MocapdError
 
 
 def folder_facts(config: Config) -> tuple[FolderFacts, ...]:
-    """Cache, state, and where the running process says how to reach it. Makes none of them."""
+    """Facts of the cache, state and runtime folders; creates none."""
     return (
         _folder("cache_dir", config.cache_dir, runs_from_it=True),
         _folder("state_dir", config.state_dir),
-        # a tenth of the memory is all that systemd gives a user there
+        # systemd limits it to a tenth of the memory
         replace(
             _folder("XDG_RUNTIME_DIR", runtime_folder(config.state_dir)),
             holds_little=True,
@@ -39,14 +39,14 @@ def _folder(key: str, path: Path, runs_from_it: bool = False) -> FolderFacts:
         free: int | None = shutil.disk_usage(there).free
     except OSError:
         free = None
-    # code that is run from there is nobody's secret
+    # the cache holds no secrets
     secret = not runs_from_it and there == path
     return FolderFacts(key, path, trouble, secret and readable_by_others(path), free)
 
 
 def _nearest(path: Path) -> Path:
-    """The folder, or the one in which it will be made."""
-    for one in (path, *path.parents):
-        if one.is_dir():
-            return one
+    """The folder, else its nearest existing parent."""
+    for folder in (path, *path.parents):
+        if folder.is_dir():
+            return folder
     return Path("/")

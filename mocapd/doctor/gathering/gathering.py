@@ -1,7 +1,7 @@
-"""Everything that the doctor looks at, asked once."""
+"""Gathers all facts once."""
 
 from mocapd.config.effective import Effective
-from mocapd.control.meant import daemons_found
+from mocapd.control.target_process import find_daemons
 from mocapd.doctor.facts import ConfigFacts, Facts, FactTrouble
 from mocapd.doctor.gathering.calibration_facts import calibration_facts
 from mocapd.doctor.gathering.camera_facts import camera_facts
@@ -17,14 +17,14 @@ from mocapd.doctor.gathering.system_facts import (
 )
 
 
-def gathered(effective: Effective, trouble: FactTrouble | None) -> Facts:
-    """trouble: why the configuration proper cannot be used; `effective` is what is built in then."""
+def gather_facts(effective: Effective, trouble: FactTrouble | None) -> Facts:
+    """trouble: why the user's configuration is invalid; `effective` then holds the built-in values."""
     config = effective.config
     calibration, saved = calibration_facts(config)
     user = user_facts()
     return Facts(
         config=ConfigFacts(effective.file, trouble),
-        daemons=tuple(one.status for one in daemons_found(config).daemons),
+        daemons=tuple(daemon.status for daemon in find_daemons(config).daemons),
         user=user,
         states=state_facts(config, user),
         cameras=camera_facts(config, saved),

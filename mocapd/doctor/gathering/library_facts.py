@@ -1,4 +1,4 @@
-"""Python and the libraries that do the work."""
+"""Facts of Python and the compiled libraries."""
 
 import importlib
 import platform
@@ -10,7 +10,7 @@ from mocapd.extras import has_extra, install_command
 from mocapd.outputs.output_table import VRChatSection
 from mocapd.outputs.vrchat.vrchat_sink import AUTO
 
-# What is imported, and the package that brings it: those with compiled code, of which any may be broken.
+# Modules with compiled code, which may be broken, and their packages.
 _COMPILED = {
     "numpy": "numpy",
     "scipy": "scipy",
@@ -22,7 +22,7 @@ _COMPILED = {
 
 
 def library_facts(config: Config) -> LibraryFacts:
-    """Imports each of them."""
+    """The facts; imports each library."""
     versions, broken = {}, {}
     for module, package in _COMPILED.items():
         try:

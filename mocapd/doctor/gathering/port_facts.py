@@ -1,4 +1,4 @@
-"""The TCP ports that the configuration wants, and who has them."""
+"""Facts of the TCP ports that the configuration needs: the programs that use them."""
 
 from mocapd.config.sections import Config
 from mocapd.doctor.facts import PortFacts
@@ -7,7 +7,7 @@ from mocapd.outputs.socket_owners import holder_of
 
 
 def port_facts(config: Config) -> tuple[PortFacts, ...]:
-    """Zenoh's own on this machine, and the page's where it is a fixed one."""
+    """Zenoh's port on this machine, and the page's if it is fixed."""
     wanted = []
     zenoh = zenoh_section(config.outputs)
     if zenoh.enabled and not zenoh.connect and not zenoh.listen:

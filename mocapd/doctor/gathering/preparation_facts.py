@@ -1,4 +1,4 @@
-"""Whether what a first start makes is made."""
+"""Facts of a first start's preparation."""
 
 import fcntl
 import os
@@ -10,7 +10,7 @@ from mocapd.session.prepared_marker import LOCK, is_prepared
 
 
 def preparation_facts(config: Config) -> PreparationFacts:
-    """By the marker, and by whether somebody holds the lock."""
+    """The facts, from the marker and the state of the lock."""
     return PreparationFacts(is_prepared(config), _is_held(config))
 
 

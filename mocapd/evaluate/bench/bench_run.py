@@ -10,7 +10,7 @@ from mocapd.evaluate.bench.bench_endurance import EnduranceFigures, endure
 from mocapd.evaluate.bench.bench_input import BenchInput
 from mocapd.evaluate.bench.bench_live import LiveFigures, Watching, bench_live
 from mocapd.evaluate.bench.bench_step import StepFigures, bench_tracker
-from mocapd.session.tracker_setup import Progress, ReadyTracker, cached, ready_tracker
+from mocapd.session.tracker_setup import Progress, ReadyTracker, cache_resources, ready_tracker
 from mocapd.trackers.registry import TRACKERS
 from mocapd.tracking.tracking_state import TrackingStateParams
 
@@ -78,7 +78,7 @@ class Bench:
     def _trackers(self, found: BenchResults) -> Iterator[tuple[str, ReadyTracker]]:
         """One at a time: only one is in memory."""
         for name in (self.tracker,) if self.tracker else TRACKERS:
-            resources = cached(self.cache_dir, self.progress, self.tracking)
+            resources = cache_resources(self.cache_dir, self.progress, self.tracking)
             try:
                 ready = ready_tracker(name, self.recording.calibration, resources)
             except ConfigError as error:

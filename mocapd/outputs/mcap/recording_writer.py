@@ -14,7 +14,6 @@ from mcap.writer import CompressionType, IndexType, Writer
 
 import mocapd
 from mocapd.boundary.mcap_records import McapAttachment
-from mocapd.capture.recording.recorded_known import RecordedKnown, attachments_of
 from mocapd.capture.recording.recorded_picture import (
     IMAGE,
     CompressedImage,
@@ -22,6 +21,7 @@ from mocapd.capture.recording.recorded_picture import (
     camera_frame,
     image_topic,
 )
+from mocapd.capture.recording.recording_metadata import RecordingMetadata, attachments_of
 from mocapd.clock import NS_PER_S
 from mocapd.errors import CannotCreateError, mend_of
 from mocapd.output_file import OutputFile, kind_by_magic
@@ -162,7 +162,7 @@ class RecordingWriter:
         self._add(image_topic(camera), IMAGE, "json", data, unix_ns, seq)
         self.pictures += 1
 
-    def attach(self, setup: RecordedKnown, unix_ns: int) -> None:
+    def attach(self, setup: RecordingMetadata, unix_ns: int) -> None:
         """Attach the set-up of cameras and wearer."""
         for file in attachments_of(setup):
             self.attach_file(file, unix_ns)

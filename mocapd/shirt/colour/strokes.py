@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 
 from mocapd.boundary.files import is_file, read_file
+from mocapd.boundary.image_decoding import MOST_DRAWN_PIXELS, MOST_FILE_BYTES, decode_picture
 from mocapd.boundary.listing import shown_in
-from mocapd.boundary.pictures import MOST_DRAWN_PIXELS, MOST_FILE_BYTES, decode_picture
 from mocapd.errors import InputError, MalformedError
 from mocapd.types import Bytes, Floats, LabelledPicture
 

@@ -12,7 +12,7 @@ from concurrent.futures import Executor
 
 from starlette.websockets import WebSocket
 
-from mocapd.capture.recording.recorded_known import attachments_of
+from mocapd.capture.recording.recording_metadata import attachments_of
 from mocapd.clock import unix_from_monotonic_ns
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Frame

@@ -15,7 +15,7 @@ from mocapd.config.sections import TrackerSection
 from mocapd.errors import InputError
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.session.tracker_setup import ReadyTracker, cached, ready_tracker
+from mocapd.session.tracker_setup import ReadyTracker, cache_resources, ready_tracker
 from mocapd.trackers.registry import shirt_tracker
 from mocapd.types import BodyState, Bytes, Rig, Skeleton
 from mocapd.wizard.body.measured_body import body_picture
@@ -93,7 +93,7 @@ def measuring_tracker(draft: Draft, cache_dir: Path, report: Tell) -> ReadyTrack
     report("loading the tracker", 0.0)
     usual = TrackerSection()
     calibration = calibration_of(replace(draft, factors=None)).assuming(usual.stature_m)
-    resources = cached(
+    resources = cache_resources(
         cache_dir,
         lambda what, done, total: report(f"making the {what}", 0.5 * READY * done / total),
     )

@@ -13,7 +13,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.loop import OnDeath, PipelineLoop
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.session.tracker_setup import cached, ready_tracker
+from mocapd.session.tracker_setup import cache_resources, ready_tracker
 from mocapd.trackers.registry import entry, measuring_tracker
 from mocapd.tracking.base import Tracker
 from mocapd.tracking.known import known_shape
@@ -59,7 +59,7 @@ def prepare(
     ready = ready_tracker(
         name,
         calibration,
-        cached(cache_dir, progress, section.tracking),
+        cache_resources(cache_dir, progress, section.tracking),
         rehearsal=lambda done, total: report(
             "preparing the tracker", _BUILDING + (1.0 - _BUILDING) * done / total
         ),

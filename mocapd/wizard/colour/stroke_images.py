@@ -5,7 +5,7 @@ import base64
 import cv2
 import numpy as np
 
-from mocapd.boundary.pictures import decode_picture
+from mocapd.boundary.image_decoding import decode_picture
 from mocapd.errors import InputError, MalformedError
 from mocapd.shirt.standard_shirt import N_COLOURS, standard_shirt
 from mocapd.types import Bytes

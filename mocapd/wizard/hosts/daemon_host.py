@@ -9,7 +9,7 @@ from pathlib import Path
 from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.calibration.calibration_record import ShirtColours
 from mocapd.capture.kinds.source_kinds import is_simulated
-from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.capture.webcam.webcam_listing import list_cameras
 from mocapd.capture.webcam.webcams import DEV, SYSFS, video_nodes
 from mocapd.config.sections import Config
@@ -17,7 +17,7 @@ from mocapd.errors import MocapdError, UnavailableError
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service.body_recorder import BodyRecorder
-from mocapd.service.recordings import Recordings
+from mocapd.service.recordings_folder import Recordings
 from mocapd.service.service import Service, Snapshot
 from mocapd.session.session import Session
 from mocapd.types import Rig
@@ -95,11 +95,13 @@ class DaemonHost:
             return wizard.draft.rig
         return self._service.session.rig
 
-    def known(self) -> RecordedKnown:
+    def known(self) -> RecordingMetadata:
         """See Host."""
         session = self._service.session
-        shirt = session.known.shirt or ShirtColours()
-        return RecordedKnown(session.rig, session.shape.stature_m, shirt.model, shirt.white_balance)
+        shirt = session.calibration.shirt or ShirtColours()
+        return RecordingMetadata(
+            session.rig, session.shape.stature_m, shirt.model, shirt.white_balance
+        )
 
     @property
     def wizard(self) -> Wizard | None:

@@ -4,8 +4,8 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 
 from mocapd.capture.base import Source
-from mocapd.capture.camera_thread.capture_care import CaptureCare
 from mocapd.capture.camera_thread.capture_status import CaptureStatus
+from mocapd.capture.camera_thread.capture_watchdog import CaptureWatchdog
 from mocapd.capture.camera_thread.thread import CaptureThread
 from mocapd.capture.kinds.source_kinds import identities_of, open_source
 from mocapd.capture.pace import Pace
@@ -44,7 +44,7 @@ class OpenCameras:
             camera.id: self._thread(source, camera)
             for camera, source in zip(cameras, self.sources, strict=True)
         }
-        self._care = CaptureCare(self._captures.values())
+        self._care = CaptureWatchdog(self._captures.values())
 
     def start(self) -> None:
         """Begin; returns at once."""

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapd.capture.base import Source
-from mocapd.capture.recording.recorded_known import RecordedKnown
+from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.errors import MocapdError, UnavailableError
 from mocapd.latch import Latch
@@ -118,9 +118,9 @@ class OwnHost:
         """See Host."""
         return self.wizard.draft.rig
 
-    def known(self) -> RecordedKnown:
+    def known(self) -> RecordingMetadata:
         """See web.host.Host: there is no saved calibration yet."""
-        return RecordedKnown()
+        return RecordingMetadata()
 
     def setup(self) -> Wizard:
         """See Host."""

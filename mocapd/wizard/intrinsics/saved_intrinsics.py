@@ -15,7 +15,7 @@ from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.toml_text import toml_text
 from mocapd.capture.kinds.source_kinds import identity_of
 from mocapd.errors import CannotCreateError, ConfigError, MocapdError, NewerFileError
-from mocapd.set_aside import set_aside
+from mocapd.quarantine import quarantine
 from mocapd.whole_file import whole_file
 from mocapd.wizard.draft import Draft, DraftCamera
 
@@ -150,7 +150,7 @@ def _readable(path: Path) -> tuple[SavedIntrinsics, ...]:
     try:
         return read_intrinsics(path.parent)
     except ConfigError as error:
-        moved_to = set_aside(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
+        moved_to = quarantine(path, "newer" if isinstance(error, NewerFileError) else "corrupt")
         _log.warning("%s %s; it is now %s", path, error.what, moved_to.name)
         return ()
 

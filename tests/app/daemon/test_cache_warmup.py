@@ -10,7 +10,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from mocapd.app.daemon.cache_warmup import database_beside
+from mocapd.app.daemon.cache_warmup import database_in_background
 from mocapd.app.terminal import progress
 from mocapd.app.terminal.progress import ProgressBars
 from mocapd.config.sections import Config
@@ -81,7 +81,7 @@ def test_a_database_that_was_made_is_not_looked_at_by_the_next_setup(
     for undo, made in ((None, 1), (None, 1), (database, 2), (None, 2), (marker, 3)):
         if undo is not None:
             undo.unlink()
-        with database_beside(config):
+        with database_in_background(config):
             until_s = time.monotonic() + 60.0
             while not (database.exists() and marker.exists()) and time.monotonic() < until_s:
                 time.sleep(0.01)
@@ -92,7 +92,7 @@ def test_a_database_that_was_made_is_not_looked_at_by_the_next_setup(
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """Lines come in a test's time."""
     monkeypatch.setattr(progress, "FIRST_AFTER_S", 0.02)
-    monkeypatch.setattr(progress, "TELL_EVERY_S", 0.02)
+    monkeypatch.setattr(progress, "REPORT_EVERY_S", 0.02)
 
 
 def err_with(capfd: pytest.CaptureFixture[str], text: str) -> str:
@@ -139,12 +139,12 @@ def test_the_preparation_ends_with_who_began_it(tmp_path: Path, killed: bool) ->
         "from mocapd.config.sections import Config\n"
         "def work(config, tell):\n"
         "    print(os.getpid(), flush=True)\n"
-        "    cache_warmup._all_end_well(config, (deep,))\n"
+        "    cache_warmup._all_succeed(config, (deep,))\n"
         "def deep(config):\n"
         "    print(os.getpid(), flush=True)\n"
         "    time.sleep(600)\n"
-        "cache_warmup.prepare_apart = work\n"
-        f"with cache_warmup.preparing_apart(Config(cache_dir={str(tmp_path)!r})) as one:\n"
+        "cache_warmup.prepare_in_processes = work\n"
+        f"with cache_warmup.prepare_in_background(Config(cache_dir={str(tmp_path)!r})) as one:\n"
         "    sys.stdin.readline()\n"
     )
     program = program.replace("cache_dir='", "cache_dir=Path('").replace("'))", "')))")

@@ -70,14 +70,14 @@ def test_waiting_ends_when_a_stream_can_begin(
 ) -> None:
     """What is left goes on, and ends with the block."""
 
-    def prepare(_config: Config, tell: cache_warmup.Tell) -> None:
+    def prepare(_config: Config, tell: cache_warmup.Report) -> None:
         tell("compiling 40 %")
         tell(cache_warmup._READY)
         tell("compiling 90 %")
         time.sleep(600.0)
 
-    monkeypatch.setattr(cache_warmup, "prepare_apart", prepare)
-    with cache_warmup.preparing_apart(Config(cache_dir=tmp_path)) as preparation:
+    monkeypatch.setattr(cache_warmup, "prepare_in_processes", prepare)
+    with cache_warmup.prepare_in_background(Config(cache_dir=tmp_path)) as preparation:
         preparation.wait()
         over = [preparation.is_over]
         assert eventually(lambda: preparation.newest() == "compiling 90 %", 60.0)

@@ -50,7 +50,7 @@ def test_a_reload_begins_with_its_time_and_ends_with_ready(manager: Manager) -> 
     notifier = Notifier(manager.address)
     before_us = monotonic_ns() // 1000
     notifier.reloading()
-    notifier.reloaded()
+    notifier.end_reload()
     begun, over = manager.waiting()
     assert begun["RELOADING"] == "1"
     assert before_us <= int(begun["MONOTONIC_USEC"]) <= monotonic_ns() // 1000
@@ -66,22 +66,22 @@ def test_the_end_is_told_once(manager: Manager) -> None:
 
 def test_the_time_limit_is_stretched_and_set_back(manager: Manager) -> None:
     notifier = Notifier(manager.address, watchdog_ns=30 * 10**9)
-    notifier.patience(600.0)
-    notifier.as_usual()
+    notifier.extend_watchdog(600.0)
+    notifier.restore_watchdog()
     assert manager.waiting() == [
         {"WATCHDOG_USEC": "600000000"},
         {"WATCHDOG_USEC": "30000000", "WATCHDOG": "1"},
     ]
-    assert not notifier.wants_life
+    assert not notifier.is_heartbeat_due
     unlimited = Notifier(manager.address)
-    unlimited.patience(600.0)
-    unlimited.as_usual()
-    assert not unlimited.wants_life
+    unlimited.extend_watchdog(600.0)
+    unlimited.restore_watchdog()
+    assert not unlimited.is_heartbeat_due
     assert manager.waiting() == []
 
 
 def test_more_patience_than_is_given_is_not_taken_away(manager: Manager) -> None:
-    Notifier(manager.address, watchdog_ns=3600 * 10**9).patience(600.0)
+    Notifier(manager.address, watchdog_ns=3600 * 10**9).extend_watchdog(600.0)
     assert manager.waiting() == [{"WATCHDOG_USEC": "3600000000"}]
 
 
@@ -95,14 +95,14 @@ def test_the_variables_are_taken_and_a_limit_for_another_process_is_not_ours(
     env |= {"WATCHDOG_PID": pid.replace("ours", str(os.getpid()))} if pid else {}
     notifier = Notifier.of_environment(env)
     assert env == {"HOME": "/"}
-    notifier.as_usual()
+    notifier.restore_watchdog()
     assert bool(manager.waiting()) == limited
 
 
 @pytest.mark.parametrize("limit", ["", "0", "-1", "soon", "²", "9" * 5000])
 def test_no_limit_that_makes_sense_is_none(manager: Manager, limit: str) -> None:
     env = {"NOTIFY_SOCKET": manager.address, "WATCHDOG_USEC": limit}
-    assert not Notifier.of_environment(env).wants_life
+    assert not Notifier.of_environment(env).is_heartbeat_due
 
 
 def test_without_a_manager_everything_goes_to_nobody() -> None:
@@ -110,11 +110,11 @@ def test_without_a_manager_everything_goes_to_nobody() -> None:
     notifier.ready("")
     notifier.status("x")
     notifier.reloading()
-    notifier.reloaded()
-    notifier.alive()
+    notifier.end_reload()
+    notifier.heartbeat()
     notifier.stopping()
     notifier.close()
-    assert not notifier.wants_life
+    assert not notifier.is_heartbeat_due
 
 
 @pytest.mark.parametrize("address", ["vsock:2:1", "/nowhere/at/all", "/" + 200 * "x", "/a\0b"])
@@ -128,8 +128,8 @@ def test_a_manager_that_is_gone_does_not_end_a_daemon_that_was_ready(manager: Ma
     notifier.ready("")
     manager.close()
     notifier.status("nobody hears it")
-    notifier.alive()
-    notifier.reloaded()
+    notifier.heartbeat()
+    notifier.end_reload()
     notifier.stopping()
     with pytest.raises(UnavailableError, match="does not take that mocapd is ready"):
         notifier.ready("")

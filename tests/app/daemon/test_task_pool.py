@@ -68,7 +68,7 @@ def test_progress_is_by_expected_seconds_and_what_a_long_task_tells() -> None:
     tasks = [
         Task("compiling", 3.0, lambda _: None),
         Task("compiling", 1.0, lambda _: time.sleep(0.6), frozenset({0})),
-        Task("film", 1.0, half, frozenset({0, 1}), tells=True),
+        Task("film", 1.0, half, frozenset({0, 1}), reports=True),
     ]
     assert run_tasks(tasks, 1, told.append)
     shares = [(one.shares["compiling"], one.shares["film"]) for one in told]

@@ -96,7 +96,7 @@ def test_what_an_admin_has_changed_stays(tmp_path: Path) -> None:
     beside = unit.with_name("mocapd.service.new")
     assert "WatchdogSec=30" in beside.read_text()
     assert {one.path for one in done if one.outcome is Outcome.KEPT} == {unit}
-    assert str(unit) in installing.kept_hint(done)
+    assert str(unit) in installing.changed_files_hint(done)
     assert {
         one.path for one in uninstall(InstallTarget(root=tmp_path)) if one.outcome is Outcome.KEPT
     } == {unit}
@@ -160,7 +160,7 @@ def test_a_link_out_of_the_environment_is_looked_at_as_well(tmp_path: Path) -> N
     link = tmp_path / "opt/python"
     link.parent.mkdir()
     link.symlink_to(real)
-    assert {link, real} <= {*interpreter.needed(link)}
+    assert {link, real} <= {*interpreter.required_paths(link)}
 
 
 @pytest.mark.parametrize(

@@ -152,5 +152,5 @@ def test_each_key_of_the_sample_is_one_when_it_is_taken_up(package: Path, tmp_pa
     config = tmp_path / "config.toml"
     config.write_text("\n".join(taken))
     effective = load_config(file=config, env={})
-    changed = {one.key.path for one in effective.settings if one.changed}
+    changed = {one.key.path for one in effective.settings if one.is_changed}
     assert {"camera", "tracker.stature_m", "zenoh.port", "vmc.enabled"} <= changed

@@ -1,6 +1,6 @@
-"""A node whose clock and network are worse than they are: for tests and load figures, on one machine.
+"""Emulates a bad network and clock of a node, for tests and load measurements on one machine.
 
-The option `--imperfect` of `mocapd camera-node` makes one. Everything else of the node is what ships.
+The option `--imperfect` of `mocapd camera-node` enables it.
 """
 
 import random
@@ -13,13 +13,13 @@ from mocapd.boundary.numbers import finite_number
 from mocapd.clock import NS_PER_S, monotonic_ns, nanoseconds, seconds
 from mocapd.errors import MalformedError, UsageError
 
-_MOST_WAITING = 1024  # things on their way
+_MOST_WAITING = 1024  # messages in transit
 
 
 @dataclass(frozen=True, slots=True)
 class Imperfections:
-    """offset_s, drift_ppm: of the node's clock against this machine's; jitter_ms: each thing is late by up to this
-    on its way; loss: the share that never arrives."""
+    """offset_s, drift_ppm: of the node's clock against this machine's; jitter_ms: largest delay of a message; loss: share
+    of lost messages."""
 
     offset_s: float = 0.0
     drift_ppm: float = 0.0
@@ -27,7 +27,7 @@ class Imperfections:
     loss: float = 0.0
 
     def node_ns(self, local_ns: int) -> int:
-        """What the node's clock shows when this machine's shows local_ns."""
+        """The node's time at local_ns of this machine's clock [ns]."""
         return local_ns + nanoseconds(self.offset_s) + round(local_ns * self.drift_ppm * 1e-6)
 
 
@@ -36,7 +36,7 @@ _LIMITS = {"offset_s": 1e6, "drift_ppm": 1e3, "jitter_ms": 1e3, "loss": 1.0}
 
 def parse_imperfections(text: str) -> Imperfections:
     """`offset_s=3,drift_ppm=50`. Raises UsageError."""
-    names = [one.name for one in fields(Imperfections)]
+    names = [key.name for key in fields(Imperfections)]
     given: dict[str, float] = {}
     for part in filter(None, text.split(",")):
         name, _, value = part.partition("=")
@@ -55,19 +55,19 @@ def parse_imperfections(text: str) -> Imperfections:
     return Imperfections(**given)
 
 
-class Way:
-    """What a node sends and is asked goes this way: at once and always, as the network has its own faults."""
+class NetworkLink:
+    """Passes the node's messages without delay or loss: a real network has its own."""
 
     def send(self, act: Callable[[], None]) -> None:
-        """Do it, when it has arrived. From any thread."""
+        """Runs `act` when the message arrives. Thread-safe."""
         act()
 
     def close(self) -> None:
-        """Forget what is still on its way."""
+        """Drops messages in transit."""
 
 
-class PoorWay(Way):
-    """Late and lossy, in order, as packets of one connection are."""
+class LossyLink(NetworkLink):
+    """Delays and loses messages, in order, as one connection does."""
 
     def __init__(self, imperfections: Imperfections) -> None:
         self._jitter_ns = nanoseconds(imperfections.jitter_ms * 1e-3)
@@ -77,11 +77,11 @@ class PoorWay(Way):
         self._waiting: deque[tuple[int, Callable[[], None]]] = deque()
         self._last_ns = 0
         self._closed = False
-        self._thread = threading.Thread(target=self._run, name="poor-way", daemon=True)
+        self._thread = threading.Thread(target=self._run, name="lossy-link", daemon=True)
         self._thread.start()
 
     def send(self, act: Callable[[], None]) -> None:
-        """See Way."""
+        """See NetworkLink."""
         with self._changed:
             if self._random.random() < self._loss or len(self._waiting) >= _MOST_WAITING:
                 return
@@ -91,7 +91,7 @@ class PoorWay(Way):
             self._changed.notify()
 
     def close(self) -> None:
-        """See Way."""
+        """See NetworkLink."""
         with self._changed:
             self._closed = True
             self._waiting.clear()

@@ -1,7 +1,7 @@
-"""What a recording knows of cameras and wearer, as files inside of it: a rig file, the wearer, the shirt's pictures.
+"""Metadata of a recording, as attached files: the rig, the wearer, pictures of the shirt.
 
-`rig.json` and `wearer.json` are as in the capture format, as are the pictures with their strokes beside them:
-`white_balance/<camera>.png` and `model/<n>.png`. No address of a camera is among it, and so no password.
+The files have the capture format: `rig.json`, `wearer.json`, and pictures with stroke files,
+`white_balance/<camera>.png` and `model/<n>.png`. Camera addresses, which may hold passwords, are not included.
 """
 
 from collections.abc import Iterable, Mapping
@@ -11,10 +11,10 @@ from typing import Any
 import cv2
 import msgspec
 
+from mocapd.boundary.image_decoding import MOST_DRAWN_PIXELS, decode_picture
 from mocapd.boundary.mcap_records import McapAttachment
 from mocapd.boundary.numbers import finite_number
 from mocapd.boundary.parsing import decode_json
-from mocapd.boundary.pictures import MOST_DRAWN_PIXELS, decode_picture
 from mocapd.capture.capture_folder import STATURES_M
 from mocapd.errors import ConfigError, InputError, MalformedError
 from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict
@@ -38,8 +38,8 @@ class _WearerFile(msgspec.Struct, frozen=True):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RecordedKnown:
-    """None and empty: nobody said. model: the shirt in neutral light; white_balance: by camera."""
+class RecordingMetadata:
+    """None or empty: not recorded. model: the shirt in neutral light; white_balance: by camera."""
 
     rig: Rig | None = None
     stature_m: float | None = None
@@ -47,35 +47,36 @@ class RecordedKnown:
     white_balance: Mapping[str, LabelledPicture] = field(default_factory=dict)
 
 
-def attachments_of(known: RecordedKnown) -> list[McapAttachment]:
-    """The files that say it."""
-    found = []
-    if known.rig is not None:
-        rig = {"cameras": [camera_to_dict(camera) for camera in known.rig.cameras]}
-        found.append(McapAttachment(RIG, _JSON, msgspec.json.encode(rig)))
-    if known.stature_m is not None:
-        wearer = msgspec.json.encode(_WearerFile(known.stature_m))
-        found.append(McapAttachment(WEARER, _JSON, wearer))
-    pictures = {f"{_WHITE}{name}": one for name, one in known.white_balance.items()}
-    pictures |= {f"{_MODEL}{number}": one for number, one in enumerate(known.model)}
+def attachments_of(metadata: RecordingMetadata) -> list[McapAttachment]:
+    """Encodes metadata as attached files."""
+    files = []
+    if metadata.rig is not None:
+        rig = {"cameras": [camera_to_dict(camera) for camera in metadata.rig.cameras]}
+        files.append(McapAttachment(RIG, _JSON, msgspec.json.encode(rig)))
+    if metadata.stature_m is not None:
+        wearer = msgspec.json.encode(_WearerFile(metadata.stature_m))
+        files.append(McapAttachment(WEARER, _JSON, wearer))
+    pictures = {f"{_WHITE}{name}": p for name, p in metadata.white_balance.items()}
+    pictures |= {f"{_MODEL}{number}": p for number, p in enumerate(metadata.model)}
     for name, picture in pictures.items():
-        found.append(McapAttachment(f"{name}.png", _PNG, _png(picture.pixels)))
-        found.append(McapAttachment(f"{name}{_STROKES}.png", _PNG, _png(picture.labels)))
-    return found
+        files.append(McapAttachment(f"{name}.png", _PNG, _png(picture.pixels)))
+        files.append(McapAttachment(f"{name}{_STROKES}.png", _PNG, _png(picture.labels)))
+    return files
 
 
-def known_of(attachments: Iterable[McapAttachment], where: str) -> RecordedKnown:
-    """Back; of files of one name the last counts, others are left alone. Raises InputError or ConfigError."""
-    files = {one.name: one.data for one in attachments}
+def metadata_of(attachments: Iterable[McapAttachment], where: str) -> RecordingMetadata:
+    """Decodes the attached files; the last of one name wins, unknown files are ignored. Raises InputError or
+    ConfigError."""
+    files = {attachment.name: attachment.data for attachment in attachments}
     pictures = {
-        name.removesuffix(".png"): _labelled(data, files, name, where)
+        name.removesuffix(".png"): _labelled_picture(data, files, name, where)
         for name, data in sorted(files.items())[: 2 * _MOST_PICTURES]
         if name.startswith((_WHITE, _MODEL)) and name.endswith(".png") and _STROKES not in name
     }
-    return RecordedKnown(
+    return RecordingMetadata(
         _rig(files[RIG], where) if RIG in files else None,
         _stature_m(files[WEARER], where) if WEARER in files else None,
-        tuple(one for name, one in pictures.items() if name.startswith(_MODEL)),
+        tuple(attachment for name, attachment in pictures.items() if name.startswith(_MODEL)),
         {name.removeprefix(_WHITE): p for name, p in pictures.items() if name.startswith(_WHITE)},
     )
 
@@ -84,7 +85,7 @@ def _rig(data: bytes, where: str) -> Rig:
     try:
         entries = decode_json(data, _RigFile).cameras
     except MalformedError as error:
-        raise _damaged(RIG, error, where) from None
+        raise _damaged_error(RIG, error, where) from None
     rig = Rig(tuple(camera_from_dict(entry, f"{where}, {RIG}") for entry in entries))
     if not rig.cameras or len(set(rig.names)) != len(rig.names):
         raise ConfigError("has no cameras, or two of one name", f"{where}, {RIG}", "record again")
@@ -96,10 +97,12 @@ def _stature_m(data: bytes, where: str) -> float:
     try:
         return finite_number(decode_json(data, _WearerFile).stature_m, *STATURES_M)
     except MalformedError as error:
-        raise _damaged(WEARER, error, where) from None
+        raise _damaged_error(WEARER, error, where) from None
 
 
-def _labelled(data: bytes, files: Mapping[str, bytes], name: str, where: str) -> LabelledPicture:
+def _labelled_picture(
+    data: bytes, files: Mapping[str, bytes], name: str, where: str
+) -> LabelledPicture:
     strokes = f"{name.removesuffix('.png')}{_STROKES}.png"
     try:
         pixels = decode_picture(data, cv2.IMREAD_COLOR, most_pixels=MOST_DRAWN_PIXELS)
@@ -108,11 +111,11 @@ def _labelled(data: bytes, files: Mapping[str, bytes], name: str, where: str) ->
         if labels.max() > _COLOURS:
             raise MalformedError(f"contains the id {labels.max()}")
     except MalformedError as error:
-        raise _damaged(name, error, where) from None
+        raise _damaged_error(name, error, where) from None
     return LabelledPicture(pixels, labels)
 
 
-def _damaged(name: str, error: MalformedError, where: str) -> InputError:
+def _damaged_error(name: str, error: MalformedError, where: str) -> InputError:
     return InputError(f"{name} in it: {error.what}", where, "record again")
 
 

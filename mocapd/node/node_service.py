@@ -18,7 +18,7 @@ from mocapd.clock import monotonic_ns
 from mocapd.config.node_params import Params
 from mocapd.errors import ConfigError, MocapdError
 from mocapd.latch import Latch
-from mocapd.node.imperfections import Imperfections, PoorWay, Way
+from mocapd.node.network_emulation import Imperfections, LossyLink, NetworkLink
 from mocapd.node.node_access import check_pairing, node_session_config, takes_orders
 from mocapd.node.node_camera import NodeCamera
 from mocapd.outputs.instance import chunk, instance_name
@@ -29,16 +29,16 @@ from mocapd.session.camera_inputs import CameraInput
 
 _log = logging.getLogger(__name__)
 
-BEAT_S = 0.1  # how soon it is told that a camera is gone or back [s]
+HEARTBEAT_S = 0.1  # interval of updating the cameras' liveliness [s]
 _STOP_S = 1.4
 
 
 class NodeThreadDiedError(Exception):
-    """A bug ended one of the node's threads; it is the cause of this."""
+    """A defect ended one of the node's threads; it is the `__cause__`."""
 
 
 class CameraNode:
-    """`with CameraNode(...) as node: node.wait(...)`. `wait` by one thread, `end` and `died` by any."""
+    """Runs as context manager; its owner calls `wait`. `end` and `died` are thread-safe."""
 
     def __init__(
         self,
@@ -48,14 +48,16 @@ class CameraNode:
         cameras: Sequence[CameraInput],
         imperfections: Imperfections | None = None,
     ) -> None:
-        """name: in the keys; empty: the machine's. Raises ConfigError."""
+        """name: in the keys; the machine's when empty. Raises ConfigError."""
         check_pairing(zenoh_params, params)
         self.name = instance_name(name)
-        _check_names(self.name, [one.source.name for one in cameras])
+        _check_names(self.name, [camera.source.name for camera in cameras])
         self._zenoh, self._params = zenoh_params, params
         self._imperfections = imperfections or Imperfections()
-        poor = imperfections is not None
-        self._out, self._in = (PoorWay(self._imperfections) if poor else Way() for _ in range(2))
+        is_emulated = imperfections is not None
+        self._out, self._in = (
+            LossyLink(self._imperfections) if is_emulated else NetworkLink() for _ in range(2)
+        )
         self._run = secrets.randbits(48)
         self._plugs, self._suspension = PlugEvents(self._look_again), SuspensionWatch()
         self._opened = ExitStack()
@@ -65,14 +67,14 @@ class CameraNode:
             NodeCamera(
                 self.name,
                 self._run,
-                one,
+                camera,
                 takes_orders(params),
                 params.jpeg_quality,
                 self._imperfections,
                 self._out,
                 self.died,
             )
-            for one in cameras
+            for camera in cameras
         )
 
     def __enter__(self) -> Self:
@@ -80,7 +82,7 @@ class CameraNode:
             _log.warning("%s", text)
         config = node_session_config(self._zenoh, self._params, self.name)
         session = self._opened.enter_context(open_session(self._zenoh, config))
-        handler = zenoh.handlers.Callback(self._tell_time, indirect=False)
+        handler = zenoh.handlers.Callback(self._answer_clock, indirect=False)
         self._opened.enter_context(session.declare_queryable(camera_wire.clock(self.name), handler))
         for camera in self.cameras:
             camera.start(session, self._opened)
@@ -94,20 +96,20 @@ class CameraNode:
         until_s = time.monotonic() + _STOP_S
         for camera in self.cameras:
             camera.stop(max(0.0, until_s - time.monotonic()))
-        for way in (self._in, self._out):
-            way.close()
+        for link in (self._in, self._out):
+            link.close()
         close_soon(self._opened)
 
     def wait(self, timeout_s: float) -> bool:
-        """Go on for so long [s]; whether it is over: told to end, or every recording has ended. Raises the named
-        error that ended a thread, or NodeThreadDiedError."""
+        """Runs for `timeout_s` [s]; True when the node is over, after `end` or the end of every recording. Raises the
+        MocapdError that ended a thread, or NodeThreadDiedError."""
         until_s = time.monotonic() + timeout_s
-        while not self._over.wait(BEAT_S):
+        while not self._over.wait(HEARTBEAT_S):
             slept_s = self._suspension.slept_s()
             for camera in self.cameras:
                 if slept_s:
                     camera.renew(f"the machine has slept for {slept_s:.0f} s")
-                camera.beat()
+                camera.update_liveliness()
             if all(camera.is_over for camera in self.cameras):
                 self._over.set()
             if time.monotonic() > until_s:
@@ -119,20 +121,20 @@ class CameraNode:
         return self._over.is_set()
 
     def end(self) -> None:
-        """Have `wait` return."""
+        """Makes `wait` return."""
         self._over.set()
 
     def died(self, error: BaseException) -> None:
-        """A thread ended unexpectedly."""
+        """Ends the node after the unexpected end of a thread."""
         self._death = self._death or error
         self._over.set()
 
     def states(self) -> tuple[CameraState, ...]:
-        """How each camera fares."""
+        """The state of each camera."""
         return tuple(camera.state for camera in self.cameras)
 
     def addresses(self) -> tuple[str, ...]:
-        """What to write as `source` in the daemon, but for the host: it is not known here how others reach it."""
+        """Addresses for `source` in the daemon's configuration; the user completes the host, which the node may not know."""
         endpoint = (*self._zenoh.connect, *zenoh_config.listen_endpoints(self._zenoh))[0]
         protocol, _, place = endpoint.partition("/")
         scheme = "zenohs" if protocol in zenoh_config.ENCRYPTED else "zenoh"
@@ -143,14 +145,14 @@ class CameraNode:
         if host in ("0.0.0.0", "[::]"):
             host = "THIS_MACHINE"
         return tuple(
-            f"{scheme}://{login}{host}:{port}/{self.name}/{one.name}" for one in self.cameras
+            f"{scheme}://{login}{host}:{port}/{self.name}/{camera.name}" for camera in self.cameras
         )
 
     def _look_again(self) -> None:
         for camera in self.cameras:
             camera.look_again()
 
-    def _tell_time(self, query: zenoh.Query) -> None:
+    def _answer_clock(self, query: zenoh.Query) -> None:
         def answer() -> None:
             taken_ns = self._imperfections.node_ns(monotonic_ns())
             answered_ns = self._imperfections.node_ns(monotonic_ns())
@@ -161,7 +163,7 @@ class CameraNode:
 
 
 def _check_names(node: str, cameras: Sequence[str]) -> None:
-    """Raises ConfigError where nobody could tell two cameras apart by their keys, or no daemon takes a name."""
+    """Raises ConfigError for cameras with equal keys, or a name that is too long."""
     by_key: dict[str, str] = {}
     for name in cameras:
         other = by_key.setdefault(chunk(name), name)
@@ -170,7 +172,7 @@ def _check_names(node: str, cameras: Sequence[str]) -> None:
                 f"{other!r} and {name!r} are both {chunk(name)!r} in the keys",
                 *("camera", "rename one of them: letters, digits, _ . and - stay as they are"),
             )
-    for where, name in (("instance", node), *(("camera", one) for one in by_key)):
+    for where, name in (("instance", node), *(("camera", key) for key in by_key)):
         if len(name) > MOST_NAME:
             raise ConfigError(f"{name!r} is too long", where, f"{MOST_NAME} characters at most")
 

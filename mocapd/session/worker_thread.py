@@ -1,6 +1,6 @@
-"""A second thread for a tracker: half of its cameras, so that a frame set takes little longer than a frame.
+"""A worker thread for half of a tracker's cameras, so that a frame set takes little longer than one frame.
 
-Whoever waits for work, or for a part of it, that nobody began yet does it: a processor that slept wakes late.
+A caller that waits for a job which has not started runs it itself, as an idle processor wakes late.
 """
 
 import os
@@ -17,28 +17,28 @@ R = TypeVar("R")
 
 
 def each_camera() -> Each:
-    """See Each; in turn where there is one processor."""
-    return side_by_side if _are_two() else in_turn
+    """The map over cameras, see Each: sequential on one processor."""
+    return map_in_two_threads if _has_two_processors() else in_turn
 
 
-def side_by_side(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
-    """See Each. The caller does the first half; in the other thread the second half is for who waits for that, if they come
-    in time."""
+def map_in_two_threads(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
+    """See Each. The caller runs the first half, the worker thread the second; the caller takes over a second half that has
+    not started."""
     things = list(of)
     if len(things) < 2:
         return in_turn(work, things)
     half = (len(things) + 1) // 2
     job = _Job(lambda: in_turn(work, things[half:]))
-    _jobs_of_other_thread().put(job)
+    _worker_queue().put(job)
     try:
-        mine = in_turn(work, things[:half])
+        results = in_turn(work, things[:half])
     finally:
         job.end()
-    return mine + job.result()
+    return results + job.result()
 
 
 class _Job(Generic[R]):
-    """Work that is done once, by who comes first: the other thread, or who waits for it."""
+    """Work that runs once: in the worker thread, or in the waiting thread if that comes first."""
 
     def __init__(self, work: Callable[[], R]) -> None:
         self._work, self._begun, self._over = work, Lock(), Lock()
@@ -47,24 +47,24 @@ class _Job(Generic[R]):
         self._error: BaseException | None = None
 
     def do(self) -> None:
-        """Unless somebody began."""
+        """Runs the work unless it has started."""
         if not self._begun.acquire(blocking=False):
             return
         try:
             self._result = self._work()
-        except BaseException as error:  # noqa: BLE001 - raised where it was asked for
+        except BaseException as error:  # noqa: BLE001 - `result` raises it
             self._error = error
         finally:
             self._over.release()
 
     def end(self) -> None:
-        """Return when it is done."""
+        """Runs or awaits the work."""
         self.do()
         with self._over:
             pass
 
     def result(self) -> R:
-        """What came of it when it is done; raises what it raised."""
+        """The result, or the exception, of the work."""
         self.end()
         if self._error is not None:
             raise self._error
@@ -72,9 +72,9 @@ class _Job(Generic[R]):
 
 
 @cache
-def _jobs_of_other_thread() -> "SimpleQueue[_Job[Any]]":
-    """What one thread does for all trackers of the process: a pipeline steps one at a time. A bare queue and bare locks, as
-    the twenty halves of a frame set would wait half a millisecond for an executor's futures."""
+def _worker_queue() -> "SimpleQueue[_Job[Any]]":
+    """The queue of one worker thread for all trackers of the process. A bare queue and bare locks: an executor's futures
+    would cost half a millisecond for the twenty jobs of a frame set."""
     jobs: SimpleQueue[_Job[Any]] = SimpleQueue()
     Thread(target=_serve, args=(jobs,), name="cameras", daemon=True).start()
     return jobs
@@ -85,5 +85,5 @@ def _serve(jobs: "SimpleQueue[_Job[Any]]") -> None:
         jobs.get().do()
 
 
-def _are_two() -> bool:
+def _has_two_processors() -> bool:
     return len(os.sched_getaffinity(0)) > 1

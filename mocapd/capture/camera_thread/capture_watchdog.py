@@ -1,4 +1,4 @@
-"""Capture threads looked after while they run: drivers that hang, and a machine that has slept."""
+"""Watchdog of running capture threads: handles hanging drivers and suspension of the machine."""
 
 import logging
 from collections.abc import Collection
@@ -9,15 +9,15 @@ from mocapd.capture.camera_thread.thread import CaptureThread
 _LOG = logging.getLogger(__name__)
 
 
-class CaptureCare:
-    """Of all threads of one owner, for whose one thread it is."""
+class CaptureWatchdog:
+    """Watches all capture threads of one owner. Not thread-safe."""
 
     def __init__(self, captures: Collection[CaptureThread]) -> None:
         self._captures = captures
         self._suspension = SuspensionWatch()
 
     def watch(self) -> None:
-        """What hangs or has slept is set right; call it about once a second or more often."""
+        """Replaces hanging threads; reopens all cameras after a suspension. Call at least once a second."""
         slept_s = self._suspension.slept_s()
         if slept_s:
             _LOG.info("the machine has slept for %.0f s: every camera is opened again", slept_s)

@@ -1,8 +1,8 @@
-"""PNG and JPEG from outside: measured before anything is decoded.
+"""Decodes PNG and JPEG from outside, after checks of their size and work.
 
-OpenCV allocates what a header or a chunk claims: 69 bytes that speak of a chunk of 4 GB take 4 GB and
-nine seconds. And it does whatever work a file asks for. So size, length and work are read here and limited: no
-picture takes longer than a second or more than 300 MB, and libpng has nothing to complain of on stderr.
+OpenCV allocates what a header or a chunk claims: 69 bytes that claim a chunk of 4 GB take 4 GB and nine seconds. So size,
+length and work are limited here: no picture takes longer than a second or more than 300 MB, and libpng prints no
+warnings.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from mocapd.boundary.png_chunks import PngHeader, is_png, plain_png, png_header
 from mocapd.errors import MalformedError
 from mocapd.types import Bytes
 
-MOST_PIXELS = 40_000_000  # of a picture whose size is not known before: somewhat above 8K
+MOST_PIXELS = 40_000_000  # limit without an expected size: somewhat above 8K
 MOST_DRAWN_PIXELS = 3840 * 2160  # of a picture that a person drew strokes on, and of the strokes
 MOST_FILE_BYTES = 64 << 20
 
@@ -36,24 +36,24 @@ class PictureHeader:
 
 
 def read_header(data: bytes | memoryview) -> PictureHeader:
-    """What a PNG or JPEG says of itself. Raises MalformedError, also when it says what cannot be."""
+    """Parses the header of a PNG or JPEG. Raises MalformedError, also for impossible values."""
     data = memoryview(data)
     kind: Literal["png", "jpeg"]
-    found: PngHeader | JpegHeader
+    detail: PngHeader | JpegHeader
     if is_png(data):
-        kind, found = "png", png_header(data)
+        kind, detail = "png", png_header(data)
     elif is_jpeg(data):
-        kind, found = "jpeg", jpeg_header(data)
+        kind, detail = "jpeg", jpeg_header(data)
     else:
         raise MalformedError("is neither PNG nor JPEG")
-    if min(found.size_px) < 1:
+    if min(detail.size_px) < 1:
         raise MalformedError("has no pixels")
-    return PictureHeader(kind, found.size_px, found.channels, found.bits, found)
+    return PictureHeader(kind, detail.size_px, detail.channels, detail.bits, detail)
 
 
 def is_plain_jpeg(data: bytes, size_px: tuple[int, int]) -> bool:
-    """Whether it is a JPEG of this size (width, height) that every browser shows: of 8 bits, grey or colour,
-    with its Huffman tables, which some webcams leave out. Raises MalformedError."""
+    """True for a JPEG of this size (width, height) that every browser shows: 8 bits, grey or colour, with its Huffman
+    tables, which some webcams omit. Raises MalformedError."""
     header = read_header(data)
     return (
         isinstance(header.detail, JpegHeader)
@@ -71,10 +71,10 @@ def decode_picture(
     most_pixels: int = MOST_PIXELS,
     most_bits: int = 8,
 ) -> Bytes:
-    """A PNG or JPEG as cv2.imdecode with these flags has it: (h,w,3) BGR or (h,w), uint8.
+    """Decodes a PNG or JPEG as cv2.imdecode with these flags: (h,w,3) BGR or (h,w), uint8.
 
-    `size_px` (width, height) is what it must have; without it, `most_pixels` is the limit. Of more than
-    8 bits a channel, where `most_bits` lets it in, the upper 8 are given. Raises MalformedError: no such
+    `size_px`: required (width, height); without it, `most_pixels` is the limit. With more than 8 bits a
+    channel, if `most_bits` permits them, the result has the upper 8. Raises MalformedError: no such
     picture, cut short, another size, more bits, more work than a picture of its size needs.
     """
     array = np.frombuffer(data, dtype=np.uint8)
@@ -100,9 +100,9 @@ def decode_picture(
 
 
 def decode_camera_picture(data: bytes | Bytes, size_px: tuple[int, int] | None = None) -> Bytes:
-    """What a camera of any sort delivered, a JPEG, as (h,w,3) uint8 BGR. size_px: as in `decode_picture`.
+    """Decodes a camera's JPEG to (h,w,3) uint8 BGR. size_px: as in `decode_picture`.
 
-    Raises MalformedError, also for a file that is larger than a picture of its size can be.
+    Raises MalformedError, also for a file that is too large for its picture size.
     """
     array = np.frombuffer(data, dtype=np.uint8)
     if not is_jpeg(array.data):

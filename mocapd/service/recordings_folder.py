@@ -1,4 +1,4 @@
-"""The folder of recordings that the page makes, and the one that is being made."""
+"""The page's folder of recordings, and the recording in progress."""
 
 import os
 import re
@@ -33,7 +33,7 @@ Notes = Annotated[str, Meta(max_length=2000)]
 
 
 class Note(msgspec.Struct, frozen=True):
-    """What is written beside a recording: its name and notes, and how long it is [s]."""
+    """The note file of a recording: name, notes, and length [s]."""
 
     name: Name = ""
     notes: Notes = ""
@@ -52,7 +52,7 @@ class RecordingRow(msgspec.Struct, frozen=True):
 
 
 class NowRecording(msgspec.Struct, frozen=True):
-    """The one that is being made."""
+    """The recording in progress."""
 
     id: str
     length_s: float
@@ -61,7 +61,7 @@ class NowRecording(msgspec.Struct, frozen=True):
 
 
 class RecordingList(msgspec.Struct, frozen=True):
-    """All of them, the newest first."""
+    """All recordings, newest first."""
 
     folder: str
     now: NowRecording | None
@@ -70,16 +70,16 @@ class RecordingList(msgspec.Struct, frozen=True):
 
 
 class Recordings:
-    """Used by the page's threads; `close` ends what is being recorded."""
+    """Thread-safe, used by the page's threads; `close` ends a recording in progress."""
 
     def __init__(self, folder: Path, begin: Callable[[Path], BodyRecorder]) -> None:
-        """begin: a recorder into that file, which this class enters and leaves; it raises MocapdError."""
+        """begin: makes a recorder to a file, which this class enters and exits; it raises MocapdError."""
         self.folder, self._begin = folder, begin
         self._lock = threading.Lock()  # guards what follows
         self._recorder: BodyRecorder | None = None
 
     def start(self) -> None:
-        """Begin one. Raises UnavailableError while one is made, CannotCreateError."""
+        """Starts a recording. Raises UnavailableError during another one, CannotCreateError."""
         with self._lock:
             if self._recorder is not None:
                 raise UnavailableError("a recording is being made", "recordings", "stop it first")
@@ -95,7 +95,7 @@ class Recordings:
             self._recorder = self._begin(path).__enter__()
 
     def stop(self) -> None:
-        """End it; nothing happens where none is made. Raises CannotCreateError."""
+        """Ends the recording in progress, if any. Raises CannotCreateError."""
         with self._lock:
             recorder, self._recorder = self._recorder, None
             if recorder is None:
@@ -107,22 +107,22 @@ class Recordings:
     close = stop
 
     def note(self, id_: str, name: str, notes: str) -> None:
-        """Write name and notes of one. Raises InputError where there is none, CannotCreateError."""
+        """Writes name and notes of a recording. Raises InputError for an unknown one, CannotCreateError."""
         self.file(id_)
         before = self._read(id_)
         self._write(id_, msgspec.structs.replace(before, name=name, notes=notes))
 
     def list(self) -> RecordingList:
-        """What there is; a folder that is not there has none."""
+        """All recordings; empty without a folder."""
         recorder = self._recorder
         now = None
         if recorder is not None:
             now = NowRecording(
                 recorder.path.stem, recorder.length_s, recorder.frames, recorder.trouble
             )
-        found = sorted(self.folder.glob("*.mcap"), reverse=True)[:MOST_LISTED]
+        paths = sorted(self.folder.glob("*.mcap"), reverse=True)[:MOST_LISTED]
         rows = []
-        for path in found:
+        for path in paths:
             if _ID.fullmatch(path.stem) and (now is None or path.stem != now.id):
                 note = self._read(path.stem)
                 with suppress(OSError):
@@ -133,19 +133,19 @@ class Recordings:
         return RecordingList(str(self.folder), now, tuple(rows))
 
     def file(self, id_: str) -> Path:
-        """Raises InputError where there is no such recording."""
+        """The path of a recording. Raises InputError for an unknown one."""
         path = self.folder / f"{id_}.mcap"
         if not _ID.fullmatch(id_) or not path.is_file():
             raise InputError("there is no such recording", "recordings", "reload the page")
         return path
 
     def file_name(self, id_: str, suffix: str) -> str:
-        """What the browser shall call it: its name where it has one."""
+        """The file name for the browser: the recording's name, else its id."""
         name = re.sub(r"[^A-Za-z0-9._-]+", "-", self._read(id_).name).strip("-.")
         return f"{name or f'mocapd-{id_}'}.{suffix}"
 
-    def exported(self, id_: str, format_: str) -> bytes:
-        """The recording in another format, made by a process of its own, so that tracking goes on. Raises InputError."""
+    def export(self, id_: str, format_: str) -> bytes:
+        """Converts a recording, in a process of its own so that tracking goes on. Raises InputError."""
         path = self.file(id_)
         if format_ not in FORMATS:
             raise InputError("there is no such format", "recordings", "reload the page")
@@ -171,7 +171,7 @@ class Recordings:
             return out.read_bytes()
 
     def _read(self, id_: str) -> Note:
-        """Empty where none is written, or it cannot be read: the recording itself is worth more."""
+        """The note; empty without a readable file, as the recording stays usable."""
         try:
             text = read_text(self.folder / f"{id_}.json", _MOST_NOTE_BYTES)
             return decode_json(text.encode(), Note)

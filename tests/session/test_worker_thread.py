@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mocapd.each import Each, in_turn
-from mocapd.session.side_by_side import side_by_side
+from mocapd.session.worker_thread import map_in_two_threads
 from mocapd.tracking.known import known_shape
 from mocapd.types import Floats
 from tests.tracking.plain_film import N_EMPTY, plain_film
@@ -16,12 +16,12 @@ from tests.tracking.profiles import markerless_tracker
 
 @pytest.mark.parametrize("count", range(6))
 def test_results_are_in_order(count: int) -> None:
-    assert side_by_side(str, range(count)) == in_turn(str, range(count))
+    assert map_in_two_threads(str, range(count)) == in_turn(str, range(count))
 
 
 def test_two_are_worked_at_at_once() -> None:
     both = threading.Barrier(2)
-    assert len(side_by_side(lambda _: both.wait(30.0), range(2))) == 2
+    assert len(map_in_two_threads(lambda _: both.wait(30.0), range(2))) == 2
 
 
 @pytest.mark.parametrize("bad", [0, 1, 2])
@@ -35,7 +35,7 @@ def test_what_one_raises_is_raised_when_all_are_done(bad: int) -> None:
             raise KeyError(one)
 
     with pytest.raises(KeyError, match=str(bad)):
-        side_by_side(work, range(4))
+        map_in_two_threads(work, range(4))
     assert not at_work & {0, 2}  # the first of each half was done
     left = set(at_work)
     time.sleep(0.1)
@@ -51,10 +51,10 @@ def test_whoever_waits_for_work_that_nobody_began_does_it() -> None:
             at_work.set()
         go_on.wait(30.0)
 
-    long = threading.Thread(target=side_by_side, args=(busy, range(2)))
+    long = threading.Thread(target=map_in_two_threads, args=(busy, range(2)))
     long.start()
     at_work.wait(30.0)
-    who += side_by_side(lambda _: threading.get_ident(), range(2))
+    who += map_in_two_threads(lambda _: threading.get_ident(), range(2))
     go_on.set()
     long.join()
     assert who == [threading.get_ident()] * 2
@@ -67,10 +67,10 @@ def test_work_begun_in_the_other_thread_is_done_there_while_nobody_waits() -> No
         if camera == 0:
             over.wait(30.0)
             return
-        who.extend(side_by_side(lambda _: threading.get_ident(), range(4)))
+        who.extend(map_in_two_threads(lambda _: threading.get_ident(), range(4)))
         over.set()
 
-    side_by_side(look, range(2))
+    map_in_two_threads(look, range(2))
     assert len(who) == 4
     assert len(set(who)) == 1
     assert who[0] != threading.get_ident()
@@ -78,7 +78,7 @@ def test_work_begun_in_the_other_thread_is_done_there_while_nobody_waits() -> No
 
 @pytest.mark.kernels
 def test_a_tracker_finds_the_same_to_the_last_bit() -> None:
-    assert np.array_equal(_joints(in_turn), _joints(side_by_side))
+    assert np.array_equal(_joints(in_turn), _joints(map_in_two_threads))
 
 
 def _joints(each: Each) -> Floats:

@@ -1,0 +1,70 @@
+"""Selects the running process that a command addresses."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Protocol, TypeVar
+
+from mocapd.config.runtime_folder import folders_to_look_in
+from mocapd.control.control_client import FoundDaemons, RunningDaemon, running_daemons
+from mocapd.errors import ConfigError, PermissionDeniedError, UnavailableError
+from mocapd.outputs.instance import chunk
+
+if TYPE_CHECKING:
+    from mocapd.config.sections import Config
+
+
+class Addressable(Protocol):
+    """The identification of a process."""
+
+    @property
+    def instance(self) -> str: ...
+
+    @property
+    def state_dir(self) -> str: ...
+
+
+P = TypeVar("P", bound=Addressable)
+
+
+def select_targets(processes: Sequence[P], config: "Config") -> Sequence[P]:
+    """Of several processes those of this configuration: by instance, then by state directory."""
+    if len(processes) > 1 and config.instance:
+        instance = chunk(config.instance)
+        processes = [p for p in processes if p.instance == instance] or processes
+    if len(processes) > 1:
+        state_dir = str(config.state_dir.resolve())
+        processes = [p for p in processes if p.state_dir == state_dir] or processes
+    return processes
+
+
+def find_daemons(config: "Config") -> FoundDaemons:
+    """Finds the daemons that this user may command."""
+    return running_daemons(folders_to_look_in(config.state_dir))
+
+
+def target_daemon(config: "Config") -> RunningDaemon:
+    """The daemon that a command addresses. Raises MocapdError."""
+    search = find_daemons(config)
+    chosen = select_targets(search.daemons, config)
+    if not chosen:
+        raise no_daemon_error(search)
+    if len(chosen) > 1:
+        names = ", ".join(f"{daemon.instance} (pid {daemon.status.pid})" for daemon in chosen)
+        raise ConfigError(
+            f"several are running: {names}", "command line", "choose by --set instance=NAME"
+        )
+    return chosen[0]
+
+
+def no_daemon_error(search: FoundDaemons) -> UnavailableError | PermissionDeniedError:
+    """The error when no daemon answers."""
+    if search.silent:
+        return UnavailableError(
+            "runs, but does not answer", str(search.silent[0]), "see its log, or restart it"
+        )
+    if search.foreign:
+        return PermissionDeniedError(
+            "a daemon of another user is running", str(search.foreign[0]), "ask with sudo"
+        )
+    return UnavailableError(
+        "no mocapd of yours is running", "this machine", "start it: `mocapd run`"
+    )
