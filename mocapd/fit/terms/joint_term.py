@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from mocapd.fit.terms.joint_rows_kernels import pull_at_joints
 from mocapd.geometry.camera_model import from_camera, to_camera
 from mocapd.types import Camera, Floats, Ints
 
+_NOWHERE = 1e-6 * np.eye(3)  # information of a joint that no camera saw [1/m^2]
 _TRUNK = [(INDEX["left" + j], INDEX["right" + j]) for j in ("UpperArm", "UpperLeg")]
 
 
@@ -94,22 +96,21 @@ class JointTerm:
         )
         return out
 
-    def triangulated(self, joint: int) -> tuple[Floats, Floats]:
-        """Where a joint is by the rays of all cameras: its place (3,) [m, world] and covariance (3,3) [m^2], by weighted
-        linear least squares; NaN and inf where fewer than two cameras saw it."""
-        A, b, cameras = np.zeros((3, 3)), np.zeros(3), 0
+    @cached_property
+    def crossings(self) -> tuple[Floats, Floats]:
+        """Where the cameras' rays cross at each joint (J,3) [m, world], by weighted linear least squares, and the largest
+        standard deviation (J,) of that [m]: inf where fewer than two cameras saw it."""
+        A, b = np.tile(_NOWHERE, (N_JOINTS, 1, 1)), np.zeros((N_JOINTS, 3))
+        cameras = np.zeros(N_JOINTS)
         for one in self.seen:
-            for n in np.flatnonzero(one.joints == joint):
-                R, t_m, (xx, xy, yy) = one.camera.R, one.camera.t_m, one.information[n]
-                rows = R[:2] - one.xy[n, :, None] * R[2]
-                weighted = rows.T @ np.array([[xx, xy], [xy, yy]])
-                A += weighted @ rows
-                b += weighted @ (one.xy[n] * t_m[2] - t_m[:2])
-                cameras += 1
-        if cameras < 2:
-            return np.full(3, np.nan), np.full((3, 3), np.inf)
-        covariance = np.asarray(np.linalg.inv(A))
-        return covariance @ b, covariance
+            R, t_m, (xx, xy, yy) = one.camera.R, one.camera.t_m, one.information.T
+            rows = R[:2] - one.xy[:, :, None] * R[2]  # (N,2,3): across the ray, by the world's axes
+            weighted = np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -2) @ rows
+            A[one.joints] += rows.transpose(0, 2, 1) @ weighted
+            b[one.joints] += np.einsum("nij,ni->nj", weighted, one.xy * t_m[2] - t_m[:2])
+            cameras[one.joints] += 1.0
+        sd_m = np.where(cameras > 1.0, np.linalg.eigvalsh(A)[:, 0] ** -0.5, np.inf)
+        return np.linalg.solve(A, b[:, :, None])[:, :, 0], sd_m
 
     def turn_rad(self, joints_m: Floats) -> float:
         """By how much a body with joints at joints_m (J,3) must turn about the vertical to face as it was seen; 0 where too

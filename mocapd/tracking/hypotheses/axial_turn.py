@@ -9,12 +9,11 @@ from mocapd.types import Floats
 def seen_between_m(joints: JointTerm, first: int, second: int, most_sd_m: float) -> Floats:
     """From one joint to another (3,) [m, world], as the cameras' rays cross there; 0 where one of the places has a larger
     standard deviation: cameras side by side hardly know how deep it is."""
-    (first_m, of_first), (second_m, of_second) = map(joints.triangulated, (first, second))
-    if not (np.isfinite(of_first).all() and np.isfinite(of_second).all()):
+    places_m, sd_m = joints.crossings
+    if max(sd_m[first], sd_m[second]) > most_sd_m:
         return np.zeros(3)
-    variance = max(np.linalg.eigvalsh(of_first)[-1], np.linalg.eigvalsh(of_second)[-1])
-    out: Floats = second_m - first_m if variance <= most_sd_m**2 else np.zeros(3)
-    return out
+    between_m: Floats = places_m[second] - places_m[first]
+    return between_m
 
 
 def turn_about_rad(axis: Floats, now: Floats, wanted: Floats, shortest: float) -> float:
