@@ -110,7 +110,8 @@ class JointTerm:
             b[one.joints] += np.einsum("nij,ni->nj", weighted, one.xy * t_m[2] - t_m[:2])
             cameras[one.joints] += 1.0
         sd_m = np.where(cameras > 1.0, np.linalg.eigvalsh(A)[:, 0] ** -0.5, np.inf)
-        return np.linalg.solve(A, b[:, :, None])[:, :, 0], sd_m
+        places_m: Floats = np.asarray(np.linalg.solve(A, b[:, :, None])[:, :, 0], dtype=np.float64)
+        return places_m, np.asarray(sd_m, dtype=np.float64)
 
     def turn_rad(self, joints_m: Floats) -> float:
         """By how much a body with joints at joints_m (J,3) must turn about the vertical to face as it was seen; 0 where too
