@@ -165,7 +165,7 @@ class Client:
             self._healths = self._opened.enter_context(
                 self._session.declare_subscriber(link.health_key, zenoh.handlers.RingChannel(1))
             )
-            hold_session(self._session, self._subscriber, owner=self)
+            hold_session(self._session, self._subscriber, self._healths, owner=self)
         self._health: Health | None = None
         self._rest_key = link.rest_key
         self._predictor: PosePredictor | None = None  # created by the first `predict`
