@@ -272,19 +272,20 @@ class CameraViews:
                     dst=camera.body,
                 )
 
-    def learn(self, state: MotionState | None, views: Sequence[View]) -> None:
-        """Learn the colours of a body that agrees with its classified pictures, from these of them; None: there is no such
-        body."""
-        if state is not None:
-            self._each(
-                lambda view: self._learn(view.index, state, view.dt_s, view.roi, view.ids), views
-            )
+    def learn(self, state: MotionState | None, views: Sequence[View], ticks: int = 1) -> None:
+        """Learn the colours of a body that agrees with what was classified in these views, and follow each background where
+        nobody is marked; not while somebody who may be a part of it is not found yet. ticks: of 1/30 s, that passed."""
+        shows = {view.index: view for view in views}
 
-    def learn_background(self, agrees: bool, ticks: int) -> None:
-        """Follow each background beside the marked body, unless the body may be a part of it; agrees: see `CameraView`;
-        ticks: of 1/30 s, that passed since the last time."""
-        certain = [i for i in self.present if not self.each[i].may_hold_body]
-        self._each(lambda i: self.each[i].learn_background(agrees, ticks), certain)
+        def learn(i: int) -> None:
+            if state is not None and i in shows:
+                view = shows[i]
+                self._learn(i, state, view.dt_s, view.roi, view.ids)
+            camera = self.each[i]
+            if not camera.may_hold_body:
+                camera.learn_background(state is not None, ticks)
+
+        self._each(learn, self.present)
 
     def outline_contrast(self) -> float:
         """How much steeper the pictures are along the marked body's outline than beside it; about 1 where nobody is."""

@@ -25,7 +25,6 @@ from mocapd.tracking.track_state import Proportions, TrackState
 from mocapd.types import Bytes, FrameSet, Rig
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
-_BACKGROUND_TICKS = 2  # between two frames that teach the background beside a body
 _DEPTHS, _JOINTS = 0, 1  # what alternates; also the look is learned in frames that look for joints
 
 
@@ -203,9 +202,6 @@ class ClothesCue:
         elif found is not None and self._ticks.alternates(2 * looks, _JOINTS):
             # depths and arms that are searched for make their frames long enough
             views = found.views
-        body = found.motion if found is not None and agrees else None
-        cameras.learn(body, views)
-        if found is None:
-            cameras.learn_background(False, self._ticks.count)
-        elif self._ticks.due(_BACKGROUND_TICKS * TICK_S):
-            cameras.learn_background(agrees, max(_BACKGROUND_TICKS, self._ticks.count))
+        cameras.learn(
+            found.motion if found is not None and agrees else None, views, self._ticks.count
+        )

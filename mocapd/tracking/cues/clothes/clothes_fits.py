@@ -140,7 +140,6 @@ class ClothesFits:
             fit.covariance, somebody.velocity, 1.0, fitter.prediction_sd, [], self.params.motion
         )
         cameras.learn(somebody, views)
-        cameras.learn_background(agrees=True, ticks=1)
         _velocity_of(model, self.params, fit, somebody, TICK_S, ())
         evidence = PoseEvidence(cameras.classified, lambda _, __: terms)
         at = Situation(self.wardrobe.dressed, TICK_S, frames, Ticks(1, 1, 1), seen, evidence)

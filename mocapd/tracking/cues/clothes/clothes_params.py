@@ -152,7 +152,7 @@ class ClothesParams:
     alike: float = 0.55  # share of two regions' colours that is the same, above which they are one
 
     # with the upper body known from another tracker
-    guided_iterations: int = 2
+    guided_iterations: int = 3
     guided_joints_s: float = 3 / 30  # from one look for joints to the next
     guided_look_s: float = (
         4 / 30

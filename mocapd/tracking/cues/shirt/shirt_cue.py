@@ -33,7 +33,6 @@ from mocapd.tracking.velocity import velocity_between
 from mocapd.types import Bytes, Floats, FrameSet, Rig
 from mocapd.vision.room_background import RoomBackground
 
-_LEARN_TICKS = 2  # between two frames that teach the light on the shirt
 _LONGEST_TICKS = 8  # after a pause no more is learned from a frame set than after so many
 
 
@@ -269,7 +268,7 @@ class ShirtCue:
 
     def learn(self, found: ShirtFound | None, present: dict[int, float], nobody: bool) -> None:
         """Follow the light from trunk and arms as found, and its own backgrounds beside them; nobody: is known at all."""
-        every = 1 if found is None else _LEARN_TICKS * self.work.looks
+        every = 1 if found is None else self.work.looks
         if not self._ticks.due(every * TICK_S):
             return
         ticks = min(max(every, self._ticks.count), _LONGEST_TICKS)

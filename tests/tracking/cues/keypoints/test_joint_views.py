@@ -48,7 +48,7 @@ def test_joints_of_somebody_are_seen_where_they_are() -> None:
         pictures = [r.picture(None, levels, k) for r in renderers]
         cameras.take(dict(enumerate(pictures)), dict.fromkeys(range(len(pictures)), 0.0))
         cameras.mark_body(None)
-        cameras.learn_background(agrees=False, ticks=1)
+        cameras.learn(None, [])
     pictures = [r.frame(0) for r in renderers]
     cameras.take(dict(enumerate(pictures)), dict.fromkeys(range(len(pictures)), 0.0))
     truth = world.at(renderers[0].exposure_s(0))
