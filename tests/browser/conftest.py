@@ -6,8 +6,9 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
@@ -19,6 +20,7 @@ from tests.web.tiny_host import TinyHost
 
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 FOR_THE_DOCS = "MOCAPD_SCREENSHOTS" in os.environ  # pictures show what users see, and take time
+PATIENCE_MS = 240_000  # of a step in a page: this machine may be busy
 PAGE_URL = re.compile(r"http://127\.0\.0\.1:\d+/\?token=\S+")
 
 
@@ -35,8 +37,22 @@ def browser() -> Iterator[Browser]:
         browser = driver.chromium.launch(
             executable_path=path, args=["--no-sandbox"] if root else []
         )
+        monkeypatched = pytest.MonkeyPatch()
+        for name in ("new_page", "new_context"):
+            monkeypatched.setattr(browser, name, _patient(getattr(browser, name)))
         yield browser
         browser.close()
+
+
+def _patient(make: Callable[..., Any]) -> Callable[..., Any]:
+    """`make` a page or a context whose steps may take as long as a busy machine needs."""
+
+    def made(*args: Any, **kwargs: Any) -> Any:
+        one = make(*args, **kwargs)
+        one.set_default_timeout(PATIENCE_MS)
+        return one
+
+    return made
 
 
 class Served:

@@ -3,8 +3,10 @@
 import hashlib
 import json
 import re
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 import msgspec
@@ -70,6 +72,15 @@ def with_hand(position: object) -> str:
     return json.dumps(tree)
 
 
+def until_true(page: Page, script: str) -> Any:
+    """What an asynchronous script in the page returns, once it is true."""
+    until_s = time.monotonic() + WAIT_MS / 1000.0
+    while not (value := page.evaluate(script)):
+        assert time.monotonic() < until_s, script
+        page.wait_for_timeout(50)
+    return value
+
+
 def state(page: Page, name: str, *words: str) -> None:
     """Wait until it is so, and said in these words."""
     expect(page.locator("#state")).to_have_attribute("data-state", name, timeout=WAIT_MS)
@@ -130,7 +141,7 @@ def test_an_asymmetric_pose_is_drawn_where_it_is(page: Page, site: str, daemon: 
     daemon.say(rest_text(), frame_text())
     page.goto(f"{site}/#mocapd={daemon.address}")
     state(page, "live")
-    drawn = page.wait_for_function(PLACES, timeout=WAIT_MS).json_value()
+    drawn = until_true(page, PLACES)
     assert drawn["left"] == pytest.approx(frame.joints["leftHand"].p, abs=1e-3)
     (left_x, left_y, _), (right_x, right_y, _) = drawn["seen"]
     assert left_x > right_x, "who faces us has the left hand to our right"
@@ -145,14 +156,15 @@ def test_joints_of_which_nothing_is_known_are_not_drawn(
     daemon.say(rest_text(), frame_text())
     page.goto(f"{site}/#mocapd={daemon.address}")
     state(page, "live")
-    page.wait_for_function(PLACES, timeout=WAIT_MS)
-    page.wait_for_function(
+    until_true(page, PLACES)
+    drawn = until_true(
+        page,
         """async () => {
-            const { figure } = await import(new URL("main.js", location).href);
-            return figure.positionOf("spine") !== null && figure.positionOf("hips") === null;
-        }""",
-        timeout=WAIT_MS,
+        const { figure } = await import(new URL("main.js", location).href);
+        return figure.positionOf("spine") !== null && [figure.positionOf("hips")];
+    }""",
     )
+    assert drawn == [None]
 
 
 def test_what_is_wrong_with_a_message_is_said_and_survived(

@@ -126,8 +126,7 @@ def test_a_camera_that_was_moved_is_said_with_the_way_to_mend_it(
         expect(page.locator("#camera-moved")).to_contain_text("cam0 was moved", timeout=WAIT_MS)
         page.screenshot(path=pictures / "live-moved.png")
         page.click("#room-anew")
-        page.wait_for_timeout(500)
-        assert page.url.endswith("#setup")
+        page.wait_for_url("**/#setup", timeout=WAIT_MS)
         assert host.begun == 1
     finally:
         host.mountings.clear()

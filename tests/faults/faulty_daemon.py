@@ -21,7 +21,7 @@ from mocapd.client import connect as connect_to_bus
 from mocapd.outputs.messages import CameraStatus
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.outputs.zenoh import keys
-from mocapd.web.runtime_file import running
+from mocapd.web.runtime_file import Running, running
 from mocapd.web.watcher import socket_address
 from tests.cli.mocapd_process import COMMAND
 from tests.conftest import ROOT
@@ -102,7 +102,13 @@ class FaultyDaemon:
         """From now on everything is kept that it sends. Raises RuntimeError where it does not serve."""
         link = Link(f"tcp/127.0.0.1:{self.port}", INSTANCE)
         folder = self.folder / "runtime" / "mocapd"
-        self.until(lambda: running(folder), "page")
+        pages: list[Running] = []
+
+        def has_page() -> bool:  # looked up once: a busy daemon may not answer a second time
+            pages[:] = running(folder)
+            return bool(pages)
+
+        self.until(has_page, "page")
         session = self._opened.enter_context(connect_to_bus(link))
         for key, take in (
             (keys.skeleton(INSTANCE, 0), self._body),
@@ -110,9 +116,8 @@ class FaultyDaemon:
         ):
             handler = zenoh.handlers.Callback(take, indirect=False)
             self._opened.enter_context(session.declare_subscriber(key, handler))
-        page = running(folder)[0]
         socket = self._opened.enter_context(
-            connect(socket_address(page.url, "/recording"), proxy=None, max_size=1 << 24)
+            connect(socket_address(pages[0].url, "/recording"), proxy=None, max_size=1 << 24)
         )
 
         def read() -> None:
