@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, ConsoleMessage, Page, sync_playwright
 
 from mocapd.config.web_params import Params
 from mocapd.web.server import WebServer
@@ -117,11 +117,15 @@ def server(host: TinyHost) -> Iterator[WebServer]:
 
 
 def problems_of(page: Page) -> list[str]:
-    """What the browser itself complains of, as it comes: errors of scripts, refusals by the CSP."""
+    """What the browser itself complains of, as it comes: errors of scripts, refusals by the CSP; not of a picture that a step
+    has replaced before a busy browser asked for it."""
     heard: list[str] = []
     page.on("pageerror", lambda error: heard.append(str(error)))
-    page.on(
-        "console",
-        lambda message: heard.append(message.text) if message.type == "error" else None,
-    )
+
+    def hear(message: ConsoleMessage) -> None:
+        is_old_picture = "404" in message.text and "/picture/" in message.location["url"]
+        if message.type == "error" and not is_old_picture:
+            heard.append(message.text)
+
+    page.on("console", hear)
     return heard
