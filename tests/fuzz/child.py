@@ -20,7 +20,7 @@ from tests.fuzz.network import keep_off
 from tests.fuzz.row import Attempt, Place, Row
 
 SLOW_S = 1.0  # that no input may take [s]
-_SURELY_SLOW_S = 5.0  # beyond, it is not for the machine being busy
+_SURELY_SLOW_S = 20.0  # beyond, it is not for the machine being busy
 _REPEATS = 4  # of a slow one: the fastest counts
 _MORE_MEMORY = 5 << 30  # that inputs may ask for, for the sake of the machine [bytes]
 _SOURCES = str(Path(mocapd.__file__).parent)

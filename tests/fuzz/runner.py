@@ -13,7 +13,7 @@ from pathlib import Path
 from tests.fuzz.child import Tally, run_row
 from tests.fuzz.row import Place, Row
 
-HANG_S = 10.0  # after which one input counts as never ending [s]
+HANG_S = 60.0  # after which one input counts as never ending, also on a machine that is busy with others [s]
 _PREPARE_S = 600.0  # its kernels may have to be compiled first
 _MOST_DEATHS = 12  # of a row, before it is given up
 _LOOK_EVERY_S = 0.05

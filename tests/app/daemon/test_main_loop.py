@@ -56,7 +56,7 @@ import signal, sys, threading
 from mocapd.app.daemon.main_loop import Signals
 class Daemon:
     def end(self): print("asked", flush=True)
-signals = Signals(within_s=0.05)
+signals = Signals(within_s=1.0)
 signals.ends(Daemon())
 print("ready", flush=True)
 hangs = threading.Lock(); hangs.acquire(); hangs.acquire()
