@@ -115,8 +115,13 @@ def test_a_room_that_contradicts_the_person_is_told(
 
 
 def test_what_was_left_out_is_named_with_its_step(tmp_path: Path) -> None:
-    assert [one.where for one in missing(Draft())] == ["room", "body"]
-    assert [one.where for one in missing(replace(full_draft(), colours={}))] == ["colour"]
+    assert [(one.what, one.where) for one in missing(Draft())] == [
+        ("where the cameras stand is not known", "room"),
+        ("the wearer's stature is not known", "body"),
+    ]
+    (colours,) = missing(replace(full_draft(), colours={}))
+    assert colours.where == "colour"
+    assert colours.what == "the shirt's colours in this light are not known"
     assert not missing(full_draft())
     context = FakeContext(tmp_path, Draft())
     step = check_step(context)

@@ -305,12 +305,12 @@ def missing(draft: Draft) -> tuple[Problem, ...]:
     problems = []
     if draft.rig is None:
         problems.append(
-            Problem("where the cameras stand is not calibration", "room", "do the step Room first")
+            Problem("where the cameras stand is not known", "room", "do the step Room first")
         )
     elif draft.has_shirt and not draft.colours:
         problems.append(
             Problem(
-                "the shirt's colours in this light are not calibration",
+                "the shirt's colours in this light are not known",
                 "colour",
                 "do the step Colour first",
             )
@@ -325,7 +325,7 @@ def missing(draft: Draft) -> tuple[Problem, ...]:
         )
     if draft.stature_m is None:
         problems.append(
-            Problem("the wearer's stature is not calibration", "body", "type it in the step Body")
+            Problem("the wearer's stature is not known", "body", "type it in the step Body")
         )
     return tuple(problems)
 
