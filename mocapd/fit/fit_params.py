@@ -35,7 +35,7 @@ class FitParams:
     elbow_sd_rad: tuple[float, float, float] = (0.5, 1.0, 1.0)
     collision_sd_m: float = 0.015  # softness of the trunk, for arms that would go into it
     limit_sd_rad: float = 0.08  # softness of the joint limits
-    narrow_rad: float = 0.26  # between the views, under which cameras count as one
+    small_baseline_rad: float = 0.26  # between the views, under which cameras count as one
     tilt_sd_rad: float = 0.25  # of the hips, before such cameras
 
     depth_off_m: float = 0.10  # of what is drawn from what is seen: it is another thing
@@ -78,7 +78,7 @@ class LimbSearchParams:
     )
     # share of an arm's area before background that denies it; where all cameras look from one side, little else does
     empty: float = 0.25
-    empty_narrow: float = 0.5
+    empty_small_baseline: float = 0.5
     # what a pose costs that arms seldom have, by its squared Mahalanobis distance: of what is seen of it [work px], and
     # in the cost of its fit
     unusual_px: float = 1.4

@@ -29,7 +29,7 @@ def initial_information(space: PoseSpace) -> Floats:
     return np.diag(1.0 / space.factor_sd**2)
 
 
-def known_of(shape: BodyShape, space: PoseSpace) -> tuple[Floats, Floats]:
+def shape_prior(shape: BodyShape, space: PoseSpace) -> tuple[Floats, Floats]:
     """The factors (n_shape,) that a space has, of a wearer's shape, and their information matrix; the mean body's where the
     shape tells none."""
     n = min(space.n_shape, len(shape.factors))
@@ -40,7 +40,9 @@ def known_of(shape: BodyShape, space: PoseSpace) -> tuple[Floats, Floats]:
     return factors, information
 
 
-def learned(shape: BodyShape, factors: Floats, information: Floats, taught_s: float) -> BodyShape:
+def update_shape(
+    shape: BodyShape, factors: Floats, information: Floats, taught_s: float
+) -> BodyShape:
     """The shape with what was learned of its first factors."""
     if len(factors) == len(shape.factors):
         return replace(shape, factors=factors, information=information, taught_s=taught_s)
@@ -52,7 +54,7 @@ def learned(shape: BodyShape, factors: Floats, information: Floats, taught_s: fl
     return BodyShape(shape.stature_m, all_factors, known, taught_s)
 
 
-def stepped(
+def apply_step(
     model: BodyModel, root_m: Floats, local_xyzw: Floats, step: Floats
 ) -> tuple[Floats, Floats]:
     """root_m and local_xyzw after a step (n_pose,) of the pose parameters."""
@@ -61,16 +63,18 @@ def stepped(
     return root, local
 
 
-def moved(
+def predict_pose(
     model: BodyModel, state: MotionState, dt_s: float, damping: float = 1.0
 ) -> tuple[Floats, Floats]:
     """root_m and local_xyzw after dt_s at the state's velocity."""
-    return stepped(model, state.root_m, state.local_xyzw, state.velocity * (dt_s * damping))
+    return apply_step(model, state.root_m, state.local_xyzw, state.velocity * (dt_s * damping))
 
 
-def gone_on(model: BodyModel, state: MotionState, dt_s: float, damping: float = 1.0) -> MotionState:
-    """The state where it has gone after dt_s, see `moved`."""
-    root, local = moved(model, state, dt_s, damping)
+def predict_state(
+    model: BodyModel, state: MotionState, dt_s: float, damping: float = 1.0
+) -> MotionState:
+    """The state where it has gone after dt_s, see `predict_pose`."""
+    root, local = predict_pose(model, state, dt_s, damping)
     return replace(state, root_m=root, local_xyzw=local)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.fit.body_drawing import Roi
+from mocapd.fit.idmap_renderer import Roi
 
 
 @dataclass(frozen=True, slots=True, eq=False)

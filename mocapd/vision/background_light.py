@@ -28,8 +28,8 @@ def relight_background(
         age[:] = 0
         return
     seen = (beside & (age >= _KNOWN))[::_STEP, ::_STEP, None].astype(np.float32)
-    before = _gathered(mean[::_STEP, ::_STEP] * seen)
-    now = _gathered(picture[::_STEP, ::_STEP] * seen)
+    before = _local_sums(mean[::_STEP, ::_STEP] * seen)
+    now = _local_sums(picture[::_STEP, ::_STEP] * seen)
     gain = np.clip((now + 1e-3) / (before + 1e-3), *_GAIN)
     h, w = body.shape
     behind = ~beside
@@ -39,7 +39,7 @@ def relight_background(
     mean[beside] = picture[beside]
 
 
-def _gathered(values: NDArray[np.float32]) -> NDArray[np.float32]:
+def _local_sums(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Sums (h,w,3) over the neighbourhood, and a little over the whole."""
     near = cv2.GaussianBlur(values, (0, 0), _SPREAD, borderType=cv2.BORDER_CONSTANT)
     return np.asarray(near + _FAR_SHARE * values.mean(axis=(0, 1)), np.float32)

@@ -16,7 +16,7 @@ from mocapd.vision.foreground_kernels import (
     stands,
     stands_before,
 )
-from mocapd.vision.uncovered import UncoveredParams, uncovered
+from mocapd.vision.ghost_removal import GhostParams, find_ghosts
 
 _PHASES = 4  # the background changes slowly: every fourth row is looked at each time
 _SPECK = np.ones((2, 2), np.uint8)  # what is smaller is noise
@@ -36,7 +36,7 @@ class BackgroundParams:
     # of a shadow: which share of the light it leaves at least, and how far a channel may be off then, 0..255
     sure_shadow: tuple[float, float] = (0.5, 7.0)
     likely_shadow: tuple[float, float] = (0.25, 12.0)
-    uncovered: UncoveredParams = field(default_factory=UncoveredParams)
+    ghosts: GhostParams = field(default_factory=GhostParams)
     rate: float = 0.04  # share of a look, once it is known
     lamp_tolerance: float = 0.055  # of a channel, 0..1: what differs by more is in another light
     lamp_share: float = 0.2  # of the background that changes at once when a lamp does
@@ -64,7 +64,7 @@ class RoomBackground:
         """Whether too little was seen yet to tell who stands before it."""
         return self._looks < self._params.first_looks
 
-    def known_room(self) -> tuple[Singles, Bytes]:
+    def empty_room(self) -> tuple[Singles, Bytes]:
         """The empty room (h,w,3) in the present light, and where it is known (h,w)."""
         return self.mean, (self.age >= self._params.known_looks).astype(np.uint8)
 
@@ -75,23 +75,23 @@ class RoomBackground:
         self.age[beside] = self._params.known_looks
         self._looks = self._params.first_looks
 
-    def know(self, room: Bytes, known: NDArray[np.bool_]) -> None:
+    def set_known(self, room: Bytes, known: NDArray[np.bool_]) -> None:
         """Take the empty room (h,w,3) for the background where it is known (h,w)."""
         self.mean[:] = room
         self.age[:] = np.where(known, self._params.known_looks, 0)
         self._looks = self._params.first_looks
 
-    def doubt(self, picture: Bytes, body: Bytes) -> None:
+    def forget_body(self, picture: Bytes, body: Bytes) -> None:
         """Forget the background where `body` (h,w) is not 0 and the picture (h,w,3) looks like it: that is the body itself,
         of somebody who never left."""
         off = np.abs(picture - self.mean).max(axis=-1)
         self.age[(body > 0) & (off <= self._params.tolerance)] = 0
 
-    def take_uncovered(self, picture: Bytes, before: Bytes, body: Bytes, arms: Bytes) -> None:
+    def remove_ghosts(self, picture: Bytes, before: Bytes, body: Bytes, arms: Bytes) -> None:
         """Take for background what `uncovered` says of a picture (h,w,3), of what stands before it (h,w), where it becomes
         BACKGROUND, and of a body (h,w) and its arms (h,w)."""
-        ghosts = uncovered(
-            picture, self.mean.astype(np.uint8), before, body, arms, self._params.uncovered
+        ghosts = find_ghosts(
+            picture, self.mean.astype(np.uint8), before, body, arms, self._params.ghosts
         )
         self.mean[ghosts] = picture[ghosts]
         before[ghosts] = BACKGROUND
@@ -130,7 +130,7 @@ class RoomBackground:
             picture[here], body, p.known_looks, p.tolerance, self.mean[here], self.age[here]
         )
 
-    def before(self, picture: Bytes, within: tuple[int, int, int, int] | None = None) -> Bytes:
+    def foreground(self, picture: Bytes, within: tuple[int, int, int, int] | None = None) -> Bytes:
         """(h,w) of a picture (h,w,3), as `stands_before` says, without specks and narrow gaps.
 
         within: x0, y0, x1, y1 of the only region that is asked for; BACKGROUND elsewhere.

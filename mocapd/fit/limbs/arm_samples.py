@@ -79,7 +79,7 @@ def _samples(
     )  # fmt: skip
 
 
-def placed(body: Shaped, arm: Arm, of: SurfaceSamples) -> ArmSamples:
+def place_samples(body: Shaped, arm: Arm, of: SurfaceSamples) -> ArmSamples:
     """Samples on a body of this shape, in the T-pose."""
     corners = body.vertices[of.corners]
     normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -11,10 +11,10 @@ from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.arm_samples import Arm, arm_of
 from mocapd.fit.limbs.arms_exchanged import with_arms_exchanged
+from mocapd.fit.limbs.hand_target_poses import hand_target_poses
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
 from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
-from mocapd.fit.limbs.limb_scores import know_depths, score_arm_poses, score_hand_places
-from mocapd.fit.limbs.reaching import reaching_poses
+from mocapd.fit.limbs.limb_scores import has_depths, score_arm_poses, score_hand_places
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.priors.pose_prior import arm_motions, unusualness
 from mocapd.fit.solver import Fitter
@@ -66,11 +66,13 @@ class ArmSearch:
         if not any(is_uncertain(side, fit, p) for side in self.arms):
             return fit, ()
         changed = []
-        empty = p.empty_narrow if self.fitter.is_narrow(fit.state, views) else p.empty
+        empty = (
+            p.empty_small_baseline if self.fitter.has_small_baseline(fit.state, views) else p.empty
+        )
         refit = partial(
             self.fitter.fit, views=views, dt_s=dt_s, iterations=3, learn_shape=learn_shape, fine=1, terms=terms
         )  # fmt: skip
-        exchanges = bool(p.exchange_turns) and turn % p.exchange_turns == 0 and know_depths(views)
+        exchanges = bool(p.exchange_turns) and turn % p.exchange_turns == 0 and has_depths(views)
         for side, arm in self.arms.items():
             if not is_uncertain(side, fit, p):
                 continue
@@ -97,7 +99,7 @@ class ArmSearch:
         cloud = part(self._cloud, turn, p.arm_cloud)
         library = part(self._library[arm.side], turn, p.arm_library)
         tries = candidates(self.fitter, state, arm, views, cloud, library)
-        reaching = reaching_poses(self.fitter, state, arm, views, p.arm_reaches, turn)
+        reaching = hand_target_poses(self.fitter, state, arm, views, p.arm_reaches, turn)
         return np.concatenate([tries, reaching])
 
     def _scores(

@@ -13,7 +13,7 @@ from mocapd.body.areas import Area
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.fit_params import LegSearchParams
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.limbs.arm_samples import Arm, leg_of, placed
+from mocapd.fit.limbs.arm_samples import Arm, leg_of, place_samples
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
 from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
 from mocapd.fit.limbs.limb_scores import PX_OF_M2, added_in_views
@@ -69,7 +69,7 @@ class LegSearch:
             self.fitter.fit, views=views, dt_s=dt_s, iterations=3, fine=1, motion=motion, terms=terms
         )  # fmt: skip
         for side, leg in self.legs.items():
-            if confirmed(side, fit) >= p.uncertain:
+            if confirmed_share(side, fit) >= p.uncertain:
                 continue
             tries = self._candidates(fit.state, leg, views, turn)
             scores = self._scores(fit.state, leg, views, tries)
@@ -92,7 +92,7 @@ class LegSearch:
     def _scores(self, state: MotionState, leg: Arm, views: Sequence[View], tries: Floats) -> Floats:
         """How much of each try is seen where the rest of the body is not, less what contradicts it (N,) [work px]."""
         p = self.params
-        samples = placed(self.fitter.shaper(state.factors), leg, leg.labelled)
+        samples = place_samples(self.fitter.shaper(state.factors), leg, leg.labelled)
         none = np.zeros(len(tries))
         scores = added_in_views(self.fitter, state, leg, views, samples, tries, p.empty, none)
         away_rad2 = turned_rad2(tries[:, :2], tries[0, :2])
@@ -109,7 +109,7 @@ class LegSearch:
         return fit.cost_for_any_pose + (p.unusual_cost * unusual + p.farther_px * away_rad2)
 
 
-def confirmed(side: str, fit: Fit) -> float:
+def confirmed_share(side: str, fit: Fit) -> float:
     """0..1: share of its pixels that the pictures confirm, of the worse of thigh and shank; 1 for what is hardly in sight."""
     mine = _AREAS[side]
     asked = fit.visible[mine] + fit.unexplained[mine]

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.fit.body_drawing import PartialRender
-from mocapd.fit.limbs.arm_samples import SKIN_LABEL, Arm, placed
+from mocapd.fit.idmap_renderer import PartialRender
+from mocapd.fit.limbs.arm_samples import SKIN_LABEL, Arm, place_samples
 from mocapd.fit.limbs.limb_candidates import turned_rad2
 from mocapd.fit.limbs.limb_search_kernels import ArmSamples, score_arms, trunk_depths
 from mocapd.fit.motion_state import MotionState
@@ -18,7 +18,7 @@ PX_OF_M2 = 3.7e4  # work pixels that a square metre takes, by its distance [px m
 _NO_DEPTHS = np.empty((0, 0), np.float32)
 
 
-def know_depths(views: Sequence[View]) -> bool:
+def has_depths(views: Sequence[View]) -> bool:
     """Whether some view tells what is before what, also where all looks alike."""
     return any(view.depth_m is not None for view in views)
 
@@ -39,7 +39,7 @@ def score_arm_poses(
     """
     model = fitter.model
     body, arms = fitter.shaper(state.factors), fitter.trunk.arms
-    samples = placed(body, arm, arm.labelled)
+    samples = place_samples(body, arm, arm.labelled)
     scores = -farther / PX_OF_M2 * turned_rad2(hypotheses[:, 1:], hypotheses[0, 1:])
     fitter.drawings[views[0].index].pose(state.root_m, state.local_xyzw, body.rest)
     depths_m2 = np.empty(len(hypotheses))
@@ -49,7 +49,7 @@ def score_arm_poses(
     )  # fmt: skip
     scores -= fitter.params.collision_information / PX_OF_M2 * depths_m2
     # an arm before a trunk that looks like it is told by depths
-    covered = 0.0 if know_depths(views) else 1.0
+    covered = 0.0 if has_depths(views) else 1.0
     scores = added_in_views(fitter, state, arm, views, samples, hypotheses, empty, scores, covered)
     seen_px: Floats = PX_OF_M2 * scores
     return seen_px
@@ -69,7 +69,7 @@ def score_hand_places(
     looked = [view for view in views if view.bare is not None]
     if not looked:
         return none
-    samples = placed(fitter.shaper(state.factors), arm, arm.hand)
+    samples = place_samples(fitter.shaper(state.factors), arm, arm.hand)
 
     def seen_in(view: View) -> Floats:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)

@@ -22,7 +22,7 @@ class ArmMotion:
     covariance_rad2: Floats
     glide_s: float
 
-    def mirrored(self) -> "ArmMotion":
+    def mirror_arm(self) -> "ArmMotion":
         """The right arm's."""
         signs = np.tile(_MIRROR, 3)
         return ArmMotion(

@@ -43,10 +43,10 @@ _NECK_REST_RAD, _NECK_SD_RAD = (0.25, 0.0, 0.0), (0.35, 0.45, 0.2)
 def arm_motions() -> Mapping[str, ArmMotion]:
     """Where the arm of each side is when nobody looks."""
     left = load_arm_motion()
-    return {"left": left, "right": left.mirrored()}
+    return {"left": left, "right": left.mirror_arm()}
 
 
-def wide_prior(model: BodyModel, p: FitParams) -> PosePriors:
+def wide_baseline_prior(model: BodyModel, p: FitParams) -> PosePriors:
     """For cameras whose views cross."""
     rest = np.tile(IDENTITY_XYZW, (N_JOINTS, 1))
     for side, mirror in (("left", 1.0), ("right", -1.0)):
@@ -68,9 +68,9 @@ def wide_prior(model: BodyModel, p: FitParams) -> PosePriors:
     return _priors(model, p, rest, information, 0.0)
 
 
-def narrow_prior(model: BodyModel, p: FitParams) -> PosePriors:
+def small_baseline_prior(model: BodyModel, p: FitParams) -> PosePriors:
     """For cameras that hardly see along their views."""
-    wide = wide_prior(model, p)
+    wide = wide_baseline_prior(model, p)
     rest, information = wide.rest_local.copy(), wide.rest_information.copy()
     for side, arm in arm_motions().items():
         rest[[INDEX[side + bone] for bone in _BONES]] = arm.mean_xyzw

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from mocapd.body.areas import N_AREAS
-from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.seen_depth import GRID_PX
+from mocapd.fit.idmap_renderer import IdMapRenderer
+from mocapd.fit.stereo_depth import GRID_PX
 from mocapd.fit.terms.depth_agreement_kernels import compare_depths
 from mocapd.fit.view import View
 from mocapd.types import Floats

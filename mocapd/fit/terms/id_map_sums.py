@@ -9,7 +9,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import joint_shape_derivatives
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import N_JOINTS
-from mocapd.fit.body_drawing import IdMapRenderer
+from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.fit.terms.id_map_kernels import AlignmentSums, ComparedPictures, Search, accumulate
 from mocapd.types import Floats

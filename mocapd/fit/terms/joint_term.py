@@ -94,7 +94,7 @@ class JointTerm:
         )
         return out
 
-    def triangulated(self, joint: int) -> tuple[Floats, Floats]:
+    def triangulate(self, joint: int) -> tuple[Floats, Floats]:
         """Where a joint is by the rays of all cameras: its place (3,) [m, world] and covariance (3,3) [m^2], by weighted
         linear least squares; NaN and inf where fewer than two cameras saw it."""
         A, b, cameras = np.zeros((3, 3)), np.zeros(3), 0

@@ -12,7 +12,7 @@ from mocapd.shirt.colour.strokes import (
     stroked_pictures,
     strokes_beside,
 )
-from mocapd.shirt.colour.white_balance import balanced
+from mocapd.shirt.colour.white_balance import apply_white_balance
 from mocapd.shirt.standard_shirt import N_COLOURS, standard_shirt
 from mocapd.types import Floats, LabelledPicture
 
@@ -55,5 +55,6 @@ def personal_model(
     """The wearer's own shirt in the light of the model, from pictures in the place's and W (3,3),
     model_from_camera, by camera: a dye that differs stays as a difference, the light does not."""
     return tuple(
-        LabelledPicture(balanced(one.pixels, W[name]), one.labels) for name, one in pictures.items()
+        LabelledPicture(apply_white_balance(one.pixels, W[name]), one.labels)
+        for name, one in pictures.items()
     )

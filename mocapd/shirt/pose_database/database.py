@@ -104,7 +104,7 @@ class PoseDatabase:
         weights = blend_weights(distances)
         local = self.local_xyzw[indices].astype(float)
         root = self.camera_from_root_xyzw[indices].astype(float)
-        return _weighted(local, weights), _weighted(root, weights)
+        return _blend_rotations(local, weights), _blend_rotations(root, weights)
 
     def root_in_view(
         self, indices: Ints, distances: NDArray[np.float64], side_rad: float
@@ -136,7 +136,7 @@ def camera_from_view(camera: Camera, centre_px: Floats) -> Floats:
     return rotations.canonical(np.array([-ray[1], ray[0], 0.0, 1.0 + ray[2]]))
 
 
-def _weighted(q_xyzw: Floats, weights: NDArray[np.float64]) -> Floats:
+def _blend_rotations(q_xyzw: Floats, weights: NDArray[np.float64]) -> Floats:
     sign = np.where((q_xyzw * q_xyzw[:1]).sum(axis=-1) < 0.0, -1.0, 1.0)
     return rotations.canonical(np.einsum("k,k...,k...i->...i", weights, sign, q_xyzw))
 

@@ -100,7 +100,7 @@ def _about(axis: int, angle_rad: Floats) -> Floats:
     return rotations.exp(vector)
 
 
-def _centred(u: Floats, low: float, high: float) -> Floats:
+def _map_to_range(u: Floats, low: float, high: float) -> Floats:
     """0..1 to low..high with the middle of the cube at 0 and twice as dense there."""
     s = 2.0 * u - 1.0
     s = 0.5 * (s + s * np.abs(s))
@@ -123,9 +123,11 @@ def _orientation(u: Floats, params: SamplingParams) -> Floats:
     q = rotations.multiply(q, CAMERA_FROM_FACING_XYZW)
     q = rotations.multiply(q, _about(1, yaw))
     low, high = np.radians(params.lean_deg)
-    q = rotations.multiply(q, _about(0, _centred(u[:, 3], low, high)))
+    q = rotations.multiply(q, _about(0, _map_to_range(u[:, 3], low, high)))
     side = np.radians(params.lean_side_deg)
-    return rotations.canonical(rotations.multiply(q, _about(2, _centred(u[:, 4], -side, side))))
+    return rotations.canonical(
+        rotations.multiply(q, _about(2, _map_to_range(u[:, 4], -side, side)))
+    )
 
 
 def _torso(u: Floats) -> Floats:

@@ -86,7 +86,7 @@ def hand_sized(bare: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return out
 
 
-def learned(sums: Floats, seen: Floats, dt_s: float, memory_s: float) -> Floats:
+def add_statistics(sums: Floats, seen: Floats, dt_s: float, memory_s: float) -> Floats:
     """sums (4,) with what was seen; nothing seen leaves them."""
     if seen[0] == 0.0:
         return sums

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import plain
-from mocapd.fit.body_drawing import IdMapRenderer, Roi, work_size
 from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.idmap_renderer import IdMapRenderer, Roi, work_size
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.colour_tables import ColourTables
 from mocapd.shirt.colour.lut_kernels import classify_by_table
@@ -157,7 +157,7 @@ class CameraSegmenter:
         distance = self._distances(
             predicted, drawing, int(min(p.threshold / (CELL * prior), _FARTHEST)), divisor
         )
-        ids, pixel_weight = self._classified(memory.appearance, roi, distance, prior)
+        ids, pixel_weight = self._classify_in_light(memory.appearance, roi, distance, prior)
         if rendered == 0:
             return ids, pixel_weight
         inside = agreement(predicted, ids)[1] / rendered
@@ -168,7 +168,7 @@ class CameraSegmenter:
             best = self._relit(predicted, ids, roi, distance, prior)
             if best is not memory.appearance:
                 memory.appearance = best
-            ids, pixel_weight = self._classified(best, roi, distance, prior)
+            ids, pixel_weight = self._classify_in_light(best, roi, distance, prior)
         return ids, pixel_weight
 
     def _relit(
@@ -178,17 +178,17 @@ class CameraSegmenter:
         seen = np.zeros((10, 4))
         colour_statistics(self.picture, roi[0], roi[1], predicted, ids, False, seen)
         best, most = memory.appearance, agreement(predicted, ids)[1]
-        lights = [looks.transported(memory.appearance, seen, self.model.mean)]
+        lights = [looks.adapt_to_light(memory.appearance, seen, self.model.mean)]
         if most < self.params.poor_classification * np.count_nonzero(predicted):
             lights += [looks.fresh(W) for W in memory.references]
         for light in lights:
-            tried, _ = self._classified(light, roi, distance, prior)
+            tried, _ = self._classify_in_light(light, roi, distance, prior)
             same = agreement(predicted, tried)[1]
             if same > 1.02 * most:
                 best, most = light, same
         return best
 
-    def _classified(
+    def _classify_in_light(
         self, appearance: ShirtAppearance, roi: Roi, distance: Ids, prior: float
     ) -> tuple[Ids, Ids]:
         p, memory = self.params, self.memory
@@ -255,7 +255,7 @@ class CameraSegmenter:
             )  # fmt: skip
         if sure and face is not None:
             seen = bare_skin.statistics(self.picture, final, roi[:2], face, W)
-            memory.skin = bare_skin.learned(
+            memory.skin = bare_skin.add_statistics(
                 memory.skin, seen, max(_SKIN_EVERY * TICK_S, dt_s), p.skin_memory_s
             )
             memory.skin_affine = bare_skin.whitening(
@@ -333,7 +333,7 @@ class CameraSegmenter:
                 )
         return best
 
-    def relight(self, W: Floats) -> None:
+    def set_light(self, W: Floats) -> None:
         """Read the pictures in this light from now on."""
         self.memory.appearance = looks.fresh(W)
         self.memory.usual = 0.0

@@ -6,9 +6,9 @@ import numpy as np
 
 from mocapd.body.areas import ARM_AREAS
 from mocapd.each import in_turn
-from mocapd.fit.body_drawing import Roi
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
+from mocapd.fit.idmap_renderer import Roi
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View

@@ -113,7 +113,7 @@ def white_balance(appearance: ShirtAppearance, model_mean: Floats, ridge: float 
     return W
 
 
-def transported(
+def adapt_to_light(
     appearance: ShirtAppearance, observed: Floats, model_mean: Floats
 ) -> ShirtAppearance:
     """The appearance in a new light, from what is seen now where each colour is expected.

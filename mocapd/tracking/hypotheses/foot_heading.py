@@ -11,7 +11,7 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, PARENTS
-from mocapd.fit.limbs.two_bones import LIMBS
+from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
@@ -86,7 +86,7 @@ def turned_legs(
 
 def _seen_foot_m(joints: JointTerm, ankle: int, toes: int, params: FootHeadingParams) -> Floats:
     """From ankle to toes (3,), as the cameras' rays cross there; 0 where they do not tell."""
-    (ankle_m, of_ankle), (toes_m, of_toes) = joints.triangulated(ankle), joints.triangulated(toes)
+    (ankle_m, of_ankle), (toes_m, of_toes) = joints.triangulate(ankle), joints.triangulate(toes)
     if not (np.isfinite(of_ankle).all() and np.isfinite(of_toes).all()):
         return np.zeros(3)
     variance = max(np.linalg.eigvalsh(of_ankle)[-1], np.linalg.eigvalsh(of_toes)[-1])

@@ -167,7 +167,7 @@ class KeypointInitialiser:
     def _candidates(self, shadows: bool) -> list[tuple[Floats, Standing]]:
         """Where somebody's middle (3,) may be, and the pieces of the foreground there."""
         views = self._views
-        blobs = {i: blobs_of(views.each[i].before, shadows, self._start) for i in views.present}
+        blobs = {i: blobs_of(views.each[i].foreground, shadows, self._start) for i in views.present}
         if not blobs or any(not one for one in blobs.values()):
             return []
         scales = [one.image_scale for one in views.each]

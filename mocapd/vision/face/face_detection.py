@@ -70,7 +70,7 @@ def _integral(grey: NDArray[Any]) -> NDArray[np.int32]:
     return np.asarray(cv2.integral(grey), np.int32)
 
 
-def grouped(windows: Floats, least_windows: int) -> tuple[FaceBox, ...]:
+def group_windows(windows: Floats, least_windows: int) -> tuple[FaceBox, ...]:
     """Faces on which at least so many of the windows (n,3) agree, the surest first."""
     left = np.asarray(windows, dtype=float)
     boxes = []
@@ -93,7 +93,7 @@ def faces_near(
     half = 0.5 * SCALE_STEP * size_px + reach_px
     region = (int(x_px - half), int(y_px - half), int(x_px + half) + 2, int(y_px + half) + 2)
     sizes = (size_px / SCALE_STEP, size_px, size_px * SCALE_STEP)
-    return grouped(face_windows(cascade, grey, sizes, region), least_windows)
+    return group_windows(face_windows(cascade, grey, sizes, region), least_windows)
 
 
 def _same_face(a: Floats, b: Floats) -> NDArray[np.bool_]:

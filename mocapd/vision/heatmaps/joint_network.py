@@ -30,7 +30,7 @@ _FILE = "joint_heatmaps.onnx"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SeenJoints:
+class DetectedJoints:
     """The joints of one picture, and where the person is.
 
     at_cells (J,2): mean x, y of each map, the middle of the first cell being 0; spread_cells2 (J,3): its variances xx, xy,
@@ -45,10 +45,10 @@ class SeenJoints:
     mask_odds: Singles
 
     @property
-    def of_body(self) -> "SeenJoints":
+    def of_body(self) -> "DetectedJoints":
         """Of `BODY_JOINTS` alone."""
         n = len(BODY_JOINTS)
-        return SeenJoints(
+        return DetectedJoints(
             self.at_cells[:n], self.spread_cells2[:n], self.farther_m[:n], self.scale_m[:n], self.mask_odds
         )  # fmt: skip
 
@@ -62,7 +62,7 @@ class JointNetwork:
         self._net = cv2.dnn.readNetFromONNX(str(asset_path(_FILE)), cv2.dnn.ENGINE_CLASSIC)
         self._input = np.zeros((1, 4, INPUT_PX, INPUT_PX), np.float32)
 
-    def look(self, picture: Bytes, background: Singles, known: Bytes) -> SeenJoints:
+    def detect(self, picture: Bytes, background: Singles, known: Bytes) -> DetectedJoints:
         """Of a picture (96,96,3) about a person; background (96,96,3): the room without it, where that is known (96,96)."""
         fill_input(picture, background, known, self._input[0])
         self._net.setInput(self._input)
@@ -70,6 +70,6 @@ class JointNetwork:
         n = len(JOINTS)
         out = np.empty((n, 7))
         read_maps(np.ascontiguousarray(maps[0]), n, out)
-        return SeenJoints(
+        return DetectedJoints(
             out[:, :2].copy(), out[:, 2:5].copy(), out[:, 5].copy(), out[:, 6].copy(), mask[0, 0].copy()
         )  # fmt: skip

@@ -44,7 +44,7 @@ def test_feet_that_point_as_they_were_seen_are_left() -> None:
 def test_one_camera_alone_does_not_say_where_toes_point() -> None:
     seen = seen_at(FITTER.joints(standing(0.0, 0.15))[0], FEET)
     seen.seen = seen.seen[:1]
-    place_m, covariance = seen.triangulated(INDEX["leftToes"])
+    place_m, covariance = seen.triangulate(INDEX["leftToes"])
     assert np.isnan(place_m).all()
     assert np.isinf(covariance).all()
     assert not list(turned_legs(FITTER, with_leg_turned(standing(0.0, 0.15), 2.6), seen, PARAMS))
@@ -52,6 +52,6 @@ def test_one_camera_alone_does_not_say_where_toes_point() -> None:
 
 def test_rays_of_two_cameras_cross_at_the_joint() -> None:
     there_m = FITTER.joints(standing(0.0, 0.15))[0]
-    place_m, covariance = seen_at(there_m, FEET).triangulated(INDEX["leftToes"])
+    place_m, covariance = seen_at(there_m, FEET).triangulate(INDEX["leftToes"])
     assert place_m == pytest.approx(there_m[INDEX["leftToes"]], abs=1e-6)
     assert (np.linalg.eigvalsh(covariance) > 0.0).all()

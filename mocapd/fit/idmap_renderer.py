@@ -11,7 +11,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
-from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.motion_state import MotionState, predict_pose
 from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.types import Camera, Floats
 from mocapd.vision.raster_kernels import bounds, label_triangles, rasterise
@@ -80,7 +80,7 @@ class IdMapRenderer:
         """The work-picture region around the body as this camera sees it; None when it is not in view."""
         w, h = work_size(self.camera, self.image_scale)
         body = self._shaper(state.factors)
-        self._project(*moved(self.model, state, dt_s), body, (0, 0, w, h))
+        self._project(*predict_pose(self.model, state, dt_s), body, (0, 0, w, h))
         n_seen, left, top, right, bottom = bounds(self.xy, self._depth, _NEAREST_M)
         if n_seen < max(len(self.xy) // 2, 1):
             return None
@@ -90,7 +90,9 @@ class IdMapRenderer:
 
     def render(self, state: MotionState, dt_s: float, roi: Roi) -> NDArray[np.uint8]:
         """The id map (h,w) of the state dt_s after its instant."""
-        return self.draw(*moved(self.model, state, dt_s), self._shaper(state.factors), roi)[0]
+        return self.draw(*predict_pose(self.model, state, dt_s), self._shaper(state.factors), roi)[
+            0
+        ]
 
     def render_about(
         self, state: MotionState, dt_s: float, margin: int
@@ -119,7 +121,7 @@ class IdMapRenderer:
     ) -> PartialRender:
         """Only these triangles of the body."""
         m = self.model
-        self._project(*moved(m, state, dt_s), self._shaper(state.factors), roi)
+        self._project(*predict_pose(m, state, dt_s), self._shaper(state.factors), roi)
         ids, triangle_at = self.last(roi)
         zbuffer = self._raster(
             self.xy, m.triangles[triangles], self.labels.label[triangles], ids, triangle_at

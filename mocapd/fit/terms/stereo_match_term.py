@@ -9,7 +9,7 @@ from mocapd.body.arrays import camera_arrays
 from mocapd.body.shaping import Shaped
 from mocapd.body.surface import LEFT_LEG, RIGHT_LEG
 from mocapd.each import Each, in_turn
-from mocapd.fit.body_drawing import IdMapRenderer
+from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.rays_in_other_kernels import distances_of_triangles, shown_on_rays
 from mocapd.fit.terms.distance_term import MeasuredDistances
 from mocapd.fit.terms.map_sampling_kernels import N_GROUPS, N_PARTS, spread_over_groups
@@ -22,7 +22,7 @@ _EDGE_PX = 2  # work pixels from the body's edge: nearer, a patch holds more of 
 
 
 @dataclass(frozen=True, slots=True)
-class MeasuringParams:
+class StereoMatchParams:
     """How many points are tried, and which are believed."""
 
     points: int = 20  # tried on each part and region of the body that shows
@@ -43,7 +43,7 @@ def measured_distances(
     greys: tuple[Bytes, Bytes],
     turn: int,
     corner: tuple[int, int] = (0, 0),
-    params: MeasuringParams | None = None,
+    params: StereoMatchParams | None = None,
     each: Each = in_turn,
 ) -> MeasuredDistances:
     """Look for points of the body as expected in one camera (drawn: its ids and triangles (h,w) over the whole work
@@ -52,7 +52,7 @@ def measured_distances(
     greys: both pictures as delivered; turn: a running number, by which other points are taken; each: of the halves of
     the points. What has no texture, or does not look alike, is left out.
     """
-    p = params if params is not None else MeasuringParams()
+    p = params if params is not None else StereoMatchParams()
     m, posed = drawing.model, drawing.posed
     y, x = _samples(drawn, m.part, p, turn)
     triangle = drawn[1][y, x].astype(np.int64)
@@ -87,7 +87,7 @@ def measured_distances(
 def _samples(
     drawn: tuple[Bytes, NDArray[np.int32]],
     part: NDArray[np.uint8],
-    params: MeasuringParams,
+    params: StereoMatchParams,
     turn: int,
 ) -> tuple[Ints, Ints]:
     """Rows and columns of pixels inside of the drawing, as many of each part's regions."""

@@ -12,8 +12,8 @@ from mocapd.body.skeleton import PARENTS
 from mocapd.fit.limbs.arm_samples import Arm
 from mocapd.fit.limbs.reaching_kernels import bend_to, rotations_of_bends
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.seen_depth import GRID_PX, grid_rays
 from mocapd.fit.solver import Fitter
+from mocapd.fit.stereo_depth import GRID_PX, grid_rays
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
@@ -27,7 +27,7 @@ _FOLDED = 0.3  # of an arm's length: nearer to the shoulder no hand is
 _STRETCHED = 1.05
 
 
-def reaching_poses(
+def hand_target_poses(
     fitter: Fitter, state: MotionState, arm: Arm, views: Sequence[View], hands: int, turn: int
 ) -> Floats:
     """Local rotations (N,3,4) of collar, upper arm and forearm, of some hands and four elbows each; none where no camera
@@ -40,7 +40,7 @@ def reaching_poses(
     hands_m = _seen_before(fitter, state, arm, view, joints)
     step = max(len(hands_m) // hands, 1)
     hands_m = hands_m[turn % step :: step][:hands]
-    return poses_to(hands_m, joints, globals_, arm, present)
+    return hand_poses(hands_m, joints, globals_, arm, present)
 
 
 def _seen_before(
@@ -65,7 +65,7 @@ def _seen_before(
     return near
 
 
-def poses_to(
+def hand_poses(
     hands_m: Floats, joints_m: Floats, globals_xyzw: Floats, arm: Arm, present_xyzw: Floats
 ) -> Floats:
     """Local rotations (N,3,4) that bring the hand's joint of an arm to each of hands_m (T,3), or as near as it reaches.
@@ -73,17 +73,17 @@ def poses_to(
     joints_m (J,3), globals_xyzw (J,4): of the body; present_xyzw (3,4): the arm's own, of which the collar stays. The
     forearm bends about its hinge, in the plane of shoulder, elbow and hand.
     """
-    upper, lower = bends_to(hands_m, joints_m, globals_xyzw, arm)
-    return bent(
+    upper, lower = limb_bones_to(hands_m, joints_m, globals_xyzw, arm)
+    return bones_to_rotations(
         upper.reshape(-1, 3), lower.reshape(-1, 3), joints_m, globals_xyzw, arm, present_xyzw
     )
 
 
-def bends_to(
+def limb_bones_to(
     hands_m: Floats, joints_m: Floats, globals_xyzw: Floats, arm: Arm
 ) -> tuple[Floats, Floats]:
     """Upper arms and forearms (S,T,3 each) [m] that bring the hand to each of hands_m (T,3), or as near as it reaches, for
-    each of S ways that the elbow is swivelled; others as `poses_to`."""
+    each of S ways that the elbow is swivelled; others as `hand_poses`."""
     shoulder, elbow, hand = joints_m[arm.chain[1:4]]
     trunk = rotations.to_matrix(globals_xyzw[PARENTS[arm.chain[0]]])
     upper, lower = np.empty((2, len(_SWIVELS_RAD), len(hands_m), 3))
@@ -94,7 +94,7 @@ def bends_to(
     return upper, lower
 
 
-def bent(
+def bones_to_rotations(
     upper: Floats,
     lower: Floats,
     joints_m: Floats,
@@ -102,7 +102,7 @@ def bent(
     arm: Arm,
     present_xyzw: Floats,
 ) -> Floats:
-    """Local rotations (T,3,4) of an arm with these upper arms and forearms (T,3 each) [m]; others as `poses_to`."""
+    """Local rotations (T,3,4) of an arm with these upper arms and forearms (T,3 each) [m]; others as `hand_poses`."""
     collar = rotations.multiply(globals_xyzw[PARENTS[arm.chain[0]]], present_xyzw[0])
     shoulder, elbow = joints_m[arm.chain[1:3]]
     pose = np.repeat(present_xyzw[None], len(upper), axis=0)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.arrays import camera_arrays
 from mocapd.each import Each, in_turn
-from mocapd.fit.body_drawing import Roi
+from mocapd.fit.idmap_renderer import Roi
 from mocapd.fit.rays_in_other_kernels import evenly_between, shown_on_rays
 from mocapd.fit.work_rays import rays_at, work_rays_in_world
 from mocapd.geometry.camera_model import centre
@@ -24,7 +24,7 @@ _APART = 2  # places: as near to the best one all are nearly as good
 
 
 @dataclass(frozen=True, slots=True)
-class SeenDepthParams:
+class StereoDepthParams:
     """Where a point of a person is looked for, and when it is believed."""
 
     nearer_m: float = 0.9  # than the hips: an arm and half a trunk
@@ -58,13 +58,13 @@ def grid_rays(
     return rays_at(work_rays_in_world(camera, image_scale), y, x, image_scale)
 
 
-def seen_depth_m(
+def stereo_depth_m(
     wanted: NDArray[np.bool_],
     roi: Roi,
     pair: StereoPair,
     root_m: Floats,
     farther_m: float,
-    params: SeenDepthParams,
+    params: StereoDepthParams,
     each: Each = in_turn,
 ) -> NDArray[np.float32]:
     """Along the camera's axis (h,w) [m], of where it is wanted (h,w) and near root_m (3,), no more than farther_m

@@ -17,7 +17,7 @@ _BODY_EDGE = np.ones((7, 7), np.uint8)  # half of it: how near to the body edges
 
 
 @dataclass(frozen=True, slots=True)
-class UncoveredParams:
+class GhostParams:
     """Which pieces are looked at, and when one is a ghost."""
 
     least_px: int = 60  # of a piece whose outline says anything
@@ -26,13 +26,13 @@ class UncoveredParams:
     arm_edges: float = 0.6
 
 
-def uncovered(
+def find_ghosts(
     picture: Bytes,
     background: Bytes,
     before: Bytes,
     body: Bytes,
     arms: Bytes,
-    params: UncoveredParams,
+    params: GhostParams,
 ) -> NDArray[np.bool_]:
     """Where ghosts are (h,w): pieces of what stands before the background along whose outline it has the stronger edges, and
     not the picture (h,w,3 each).

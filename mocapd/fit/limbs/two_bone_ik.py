@@ -32,7 +32,7 @@ LIMBS = {
 }
 
 
-def bent_towards(
+def two_bone_pose(
     limb: Limb, rest_m: Floats, joints_m: Floats, global_xyzw: Floats, places_m: Floats
 ) -> Floats | None:
     """Rotations (2,4) of the limb's bones, each relative to its parent, that lead to where its second joint and its end are
