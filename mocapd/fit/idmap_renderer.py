@@ -81,8 +81,8 @@ class IdMapRenderer:
         w, h = work_size(self.camera, self.image_scale)
         body = self._shaper(state.factors)
         self._project(*predict_pose(self.model, state, dt_s), body, (0, 0, w, h))
-        n_seen, left, top, right, bottom = bounds(self.xy, self._depth, _NEAREST_M)
-        if n_seen < max(len(self.xy) // 2, 1):
+        n_visible, left, top, right, bottom = bounds(self.xy, self._depth, _NEAREST_M)
+        if n_visible < max(len(self.xy) // 2, 1):
             return None
         x0, y0 = max(0, int(left) - margin) & ~1, max(0, int(top) - margin) & ~1
         x1, y1 = min(w, int(right) + margin), min(h, int(bottom) + margin)
@@ -112,7 +112,7 @@ class IdMapRenderer:
         return self._ids[: h * w].reshape(h, w), self._triangle_at[: h * w].reshape(h, w)
 
     def last_depth_m(self, roi: Roi) -> NDArray[np.float32]:
-        """Depths (h,w) of what was drawn last in this region, along the camera's axis; far away where nothing was."""
+        """Depths (h,w) of the last drawing in this region, along the camera's axis; far away on the background."""
         h, w = roi[3] - roi[1], roi[2] - roi[0]
         return self._zbuffer[: h * w].reshape(h, w)
 

@@ -1,7 +1,7 @@
 """Fit pose and body shape to the classified pictures of all cameras at once, by Gauss-Newton.
 
-Every iteration sums what the terms say of one body: the id maps of all cameras, each at its own instant, the trunk that
-arms do not go through, and whatever terms the caller has. `solve_kernels` adds the priors and solves the small system.
+Every iteration sums the terms of one body: the id maps of all cameras, each at its own instant, collisions of the arms with
+the trunk, and the caller's terms. `solve_kernels` adds the priors and solves the small system.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ from mocapd.fit.view import View, coarse
 from mocapd.types import Camera, Floats
 
 _USUAL_HZ = 30.0  # spreads about a prediction are those of such a frame
-_FACTORS = 0.6, 1.6  # nobody's proportions are beyond
+_FACTORS = 0.6, 1.6  # limits of human proportions
 
 
 class Fitter:
@@ -84,7 +84,7 @@ class Fitter:
         rendered: the prediction was drawn last into every view, so that the first iteration need
         not draw it again. fine: how many of the iterations, the last ones, look at all pixels
         (None: as many as the parameters say). motion (n_pose,n_pose): information of
-        the prediction; None for the usual, loose one. terms: what else holds or pulls the pose.
+        the prediction; None for the usual, loose one. terms: further rows of the normal equations.
         """
         p, m, n_pose = self.params, self.model, self.model.n_pose
         state, cost, measured = prediction, 0.0, 0.0
@@ -98,15 +98,17 @@ class Fitter:
         )
         evidence = held = np.zeros((n_pose, n_pose))
         coarsely = [coarse(view) for view in views]
-        known = np.ascontiguousarray(prediction.information)  # a slice would be another kernel
+        shape_information = np.ascontiguousarray(
+            prediction.information
+        )  # a slice would be another kernel
         for k in range(iterations):
             is_fine, body = k >= iterations - fine, self.shaper(state.factors)
             # proportions are a matter of a few pixels
             n_shape = m.n_shape if learn_shape and is_fine else 0
             search = self._id_maps.search(k / max(iterations - 1, 1), is_fine, k & 1)
-            seen = views if is_fine else coarsely
+            pictures = views if is_fine else coarsely
             redraw = not rendered or k > 0
-            evidence, pull = self._id_maps.system(state, body, seen, search, n_shape, redraw)
+            evidence, pull = self._id_maps.system(state, body, pictures, search, n_shape, redraw)
             held, posed = evidence.copy(), self._pose_joints(state, body)
             cost, measured = self.trunk.add(posed, body, held, pull), 0.0
             for term in terms:
@@ -115,7 +117,7 @@ class Fitter:
                 measured += added if term.is_measured else 0.0
             A, g = gauss_newton_system(
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
-                motion, priors, prediction.factors - state.factors, known,
+                motion, priors, prediction.factors - state.factors, shape_information,
             )  # fmt: skip
             step = np.asarray(np.linalg.solve(A, g), dtype=np.float64)
             root_m, local_xyzw = apply_step(m, state.root_m, state.local_xyzw, step[:n_pose])

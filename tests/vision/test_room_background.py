@@ -185,7 +185,7 @@ def test_a_region_alone_is_looked_at_as_the_whole_is() -> None:
 
 
 def test_the_room_beside_somebody_who_never_left_is_learned_when_it_stays_the_same() -> None:
-    background, known = RoomBackground(H, W, BackgroundParams()), BackgroundParams().known_looks
+    background, known = RoomBackground(H, W, BackgroundParams()), BackgroundParams().least_looks
     somebody = np.zeros((H, W), np.uint8)
     somebody[10:50, 30:50] = 1
     background.seed(wall(), somebody)

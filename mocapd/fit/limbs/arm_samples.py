@@ -13,7 +13,7 @@ from mocapd.fit.limbs.limb_search_kernels import ArmSamples
 from mocapd.fit.surface_labels import MAX_LABELS, SurfaceLabels
 from mocapd.types import Floats, Ints
 
-SKIN_LABEL = MAX_LABELS - 1  # beside those that a surface has
+SKIN_LABEL = MAX_LABELS - 1  # after the surface's labels
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,4 +1,4 @@
-"""Two arms look alike: seen from the side one may have slipped onto the other, and each is tried where the other one is."""
+"""Left-right swap of the arms: in a side view one arm may slip onto the other."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -14,7 +14,7 @@ from mocapd.fit.solver import Fitter
 
 
 def with_arms_exchanged(fitter: Fitter, state: MotionState, arms: Mapping[str, Arm]) -> MotionState:
-    """Each hand where the other one is, or as near as it reaches, with the elbow beside the other's; arms: both, by side."""
+    """Each hand where the other one is, or as near as it reaches, with the elbow near the other's; arms: both, by side."""
     joints_m, globals_ = fitter.joints(state)
     exchanged = replace(state, velocity=np.zeros_like(state.velocity))
     for side, its in (SIDES, SIDES[::-1]):

@@ -1,7 +1,7 @@
-"""Poses of an arm whose hand is where something is seen before the rest of the body.
+"""Arm poses by two-bone IK, with the hand at an object in front of the rest of the body.
 
-Of a cloud of poses few come near a hand that is stretched out to the cameras; what is seen there says where it is, and the
-elbow is somewhere on a circle.
+Few random poses come near a hand that is stretched out to the cameras. Stereo depth gives its place, and the elbow lies
+on a circle.
 """
 
 from collections.abc import Sequence
@@ -22,36 +22,36 @@ from mocapd.types import Floats
 # Of the elbow about the line from shoulder to hand, from below it outwards
 _SWIVELS_RAD = np.radians([0.0, 50.0, 100.0, -50.0])
 _SKIN_M = 0.03  # a hand's middle is behind its skin
-_BEFORE_M = 0.12  # the rest of the body, at least
-_FOLDED = 0.3  # of an arm's length: nearer to the shoulder no hand is
+_IN_FRONT_M = 0.12  # least distance from the rest of the body
+_FOLDED = 0.3  # of an arm's length: least distance of the hand from the shoulder
 _STRETCHED = 1.05
 
 
 def hand_target_poses(
     fitter: Fitter, state: MotionState, arm: Arm, views: Sequence[View], hands: int, turn: int
 ) -> Floats:
-    """Local rotations (N,3,4) of collar, upper arm and forearm, of some hands and four elbows each; none where no camera
-    sees depths. turn: a running number, by which other hands are taken."""
+    """Local rotations (N,3,4) of collar, upper arm and forearm, of some hands and four elbows each; none
+    without stereo depth. turn: a running number that selects other hands."""
     present = state.local_xyzw[arm.chain[:3]]
     view = next((view for view in views if view.depth_m is not None), None)
     if view is None:
         return np.empty((0, 3, 4))
     joints, globals_ = fitter.joints(state)
-    hands_m = _seen_before(fitter, state, arm, view, joints)
+    hands_m = _points_in_front(fitter, state, arm, view, joints)
     step = max(len(hands_m) // hands, 1)
     hands_m = hands_m[turn % step :: step][:hands]
     return hand_poses(hands_m, joints, globals_, arm, present)
 
 
-def _seen_before(
+def _points_in_front(
     fitter: Fitter, state: MotionState, arm: Arm, view: View, joints_m: Floats
 ) -> Floats:
-    """Places (N,3) in the arm's reach that are seen before the rest of the body."""
+    """Points (N,3) in the arm's reach in front of the rest of the body."""
     assert view.depth_m is not None
     drawing = fitter.drawings[view.index]
     base = drawing.render_parts(state, view.dt_s, view.roi, arm.others)
     depth_m = view.depth_m[::GRID_PX, ::GRID_PX]
-    y, x = np.nonzero(depth_m < base.zbuffer[::GRID_PX, ::GRID_PX] - _BEFORE_M)
+    y, x = np.nonzero(depth_m < base.zbuffer[::GRID_PX, ::GRID_PX] - _IN_FRONT_M)
     if not len(y):
         return np.empty((0, 3))
     origin = centre(drawing.camera)

@@ -1,7 +1,7 @@
-"""Arms do not go through the trunk: what else would be the cheapest way to hide one that is not seen.
+"""Arms do not go through the trunk: inside it an unseen arm would cost least.
 
-The trunk is an elliptic cylinder whose half axes follow the wearer's surface by height, as the anisotropically scaled
-cylinder of Hecht et al. 2009 (section 3.3); elbow, forearm, wrist and hand are kept outside of it.
+The trunk is an elliptic cylinder with half axes that follow the wearer's surface by height, as the anisotropically scaled
+cylinder of Hecht et al. 2009 (section 3.3); elbow, forearm, wrist and hand stay outside of it.
 """
 
 from dataclasses import dataclass

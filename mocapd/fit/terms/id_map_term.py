@@ -24,7 +24,7 @@ _NO_PIXELS = np.zeros(N_AREAS)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Iteration:
-    """What is the same for all cameras in one of them; n_unknown: of pose, or of pose and shape."""
+    """Inputs of one iteration for all cameras; n_unknown: of pose, or of pose and shape."""
 
     state: MotionState
     body: Shaped
@@ -34,7 +34,7 @@ class _Iteration:
 
 
 class IdMapTerm:
-    """What the pictures of all cameras say of one body. Each camera's sums are those of the last `system`."""
+    """Id maps of all cameras against one body. Each camera's sums are those of the last `system`."""
 
     def __init__(
         self, drawings: Sequence[IdMapRenderer], model: BodyModel, params: FitParams, each: Each
@@ -70,7 +70,7 @@ class IdMapTerm:
         n_shape: int,
         redraw: bool,
     ) -> tuple[Floats, Floats]:
-        """H (P,P), b (P,) of all views, whose pictures are on the search's grid; n_shape: how many shape factors are unknowns
+        """H (P,P), b (P,) of all views, with pictures on the search's grid; n_shape: how many shape factors are unknowns
         after those of the pose, none or all. redraw: not, where the state was drawn last into every view."""
         P = self._model.n_pose + n_shape
         self._each(partial(self._gather, _Iteration(state, body, search, P, redraw)), views)

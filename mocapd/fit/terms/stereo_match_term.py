@@ -1,4 +1,4 @@
-"""Distances of the body's surface, measured between two cameras side by side where its cloth has texture."""
+"""Distances of the body's surface, measured by stereo matching between two neighbouring cameras."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ _EDGE_PX = 2  # work pixels from the body's edge: nearer, a patch holds more of 
 
 @dataclass(frozen=True, slots=True)
 class StereoMatchParams:
-    """How many points are tried, and which are believed."""
+    """How many points are matched, and which are accepted."""
 
     points: int = 20  # tried on each part and region of the body that shows
     leg_points: int = 20  # the same of legs, which have less texture
@@ -50,7 +50,7 @@ def measured_distances(
     picture, or a region of it that begins at `corner`, posed by `drawing`) in the other camera's picture.
 
     greys: both pictures as delivered; turn: a running number, by which other points are taken; each: of the halves of
-    the points. What has no texture, or does not look alike, is left out.
+    the points. Points without texture or with a poor match are left out.
     """
     p = params if params is not None else StereoMatchParams()
     m, posed = drawing.model, drawing.posed

@@ -77,7 +77,7 @@ def remember_illumination(
     When full, the oldest after the first leaves: the first is the user's own scribble, and the
     cost of trying them all must not grow with running time.
     """
-    if any(frobenius_distance(W, known) <= min_distance for known in references):
+    if any(frobenius_distance(W, other) <= min_distance for other in references):
         return references
     if len(references) >= capacity:
         references = references[:1] + references[2:]

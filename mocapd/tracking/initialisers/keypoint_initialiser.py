@@ -123,12 +123,12 @@ class KeypointInitialiser:
         for _ in range(p.looks):
             watch = self._joints.watch(fitter, state, self._views)
             terms = self._joints.term(fitter.model, map(watch, who.blobs))
-            if not terms or len(terms[0].seen) < len(who.blobs):
+            if not terms or len(terms[0].rays) < len(who.blobs):
                 return None
             joints = terms[0]
             if max(joints.median_spreads_m(p.least_joints)) > p.hopeless_m:
                 return None
-            places_m = triangulated_joints(joints.seen, hips_m, p.middle_sd_m)
+            places_m = triangulated_joints(joints.rays, hips_m, p.middle_sd_m)
             posed = pose_through(fitter, places_m, factors, information)
             if posed is None:
                 return None

@@ -13,9 +13,7 @@ from mocapd.vision.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays, sca
 SCALE_STEP = 1.2  # of neighbouring sizes; the cascade bears a tenth either way
 _MOST_WINDOWS = 4096
 STEP = 2  # of the window, at the cascade's own scale
-_PROMISING = (
-    6  # stages that a window passes before those beside it are looked at: one in fifty does
-)
+_PROMISING = 6  # stages that a window passes before its neighbours are scanned: one in fifty does
 _NEAR = 0.3  # of the size: windows closer than that, and alike in size, mean the same face
 _ALIKE = 1.5
 
@@ -89,7 +87,7 @@ def faces_near(
     cascade: CascadeArrays, grey: Bytes, x_px: float, y_px: float, size_px: float, reach_px: float,
     least_windows: int,
 ) -> tuple[FaceBox, ...]:  # fmt: skip
-    """Faces of about this size whose middle is within reach of a place, looked for in three sizes."""
+    """Faces of about this size with their middle within reach of a place; scans three sizes."""
     half = 0.5 * SCALE_STEP * size_px + reach_px
     region = (int(x_px - half), int(y_px - half), int(x_px + half) + 2, int(y_px + half) + 2)
     sizes = (size_px / SCALE_STEP, size_px, size_px * SCALE_STEP)

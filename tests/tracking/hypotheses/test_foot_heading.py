@@ -43,7 +43,7 @@ def test_feet_that_point_as_they_were_seen_are_left() -> None:
 
 def test_one_camera_alone_does_not_say_where_toes_point() -> None:
     seen = seen_at(FITTER.joints(standing(0.0, 0.15))[0], FEET)
-    seen.seen = seen.seen[:1]
+    seen.rays = seen.rays[:1]
     place_m, covariance = seen.triangulate(INDEX["leftToes"])
     assert np.isnan(place_m).all()
     assert np.isinf(covariance).all()
