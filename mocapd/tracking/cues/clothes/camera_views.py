@@ -174,13 +174,13 @@ class CameraViews:
     def _renew_before(self, i: int, looks_round: bool) -> None:
         self.each[i].update_foreground(everywhere=looks_round)
         if looks_round:
-            self._take_uncovered(i)
+            self._remove_ghosts_of(i)
 
     def remove_ghosts(self) -> None:
         """Take for background what stands before it by mistake; see `RoomBackground`. The marked body was drawn last."""
-        self._each(self._take_uncovered, self.present)
+        self._each(self._remove_ghosts_of, self.present)
 
-    def _take_uncovered(self, i: int) -> None:
+    def _remove_ghosts_of(self, i: int) -> None:
         camera, arms = self.each[i], np.zeros_like(self.each[i].drawn)
         if camera.near is not None:
             x0, y0, x1, y1 = camera.near
