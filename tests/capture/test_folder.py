@@ -227,7 +227,9 @@ def test_strokes_without_their_image_are_named(tmp_path: Path, folder: str) -> N
     path = write_capture(tmp_path / "capture")
     (path / folder).mkdir()
     (path / folder / "cam0_strokes.png").touch()
-    with pytest.raises(InputError, match=r"cam0_strokes\.png: the picture .* put cam0\.png into the same folder"):
+    with pytest.raises(
+        InputError, match=r"cam0_strokes\.png: the picture .* put cam0\.png into the same folder"
+    ):
         load_folder(path)
 
 
