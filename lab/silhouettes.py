@@ -83,7 +83,7 @@ def _of_picture(view: CameraView, true: Bytes, track: Track) -> Mapping[str, flo
         left, top, right, bottom = (px // view.image_scale for px in track.roi_px[view.name])
         regions[top:bottom, left:right] = track.evidence[view.name] > 0
     kinds = {
-        "background": stands(view.before),
+        "background": stands(view.foreground),
         "network": view.person_odds > 0.0 if view.person_odds.any() else None,
         "regions": regions,
     }

@@ -28,7 +28,7 @@ def _no_depths(params: ClothesParams) -> ClothesParams:
 
 
 def _no_floor(params: ClothesParams) -> ClothesParams:
-    return replace(params, floor=FloorParams(under_sd_m=_SOFT_M, standing_sd_m=_SOFT_M))
+    return replace(params, floor=FloorParams(under_sd_m=_SOFT_M, on_floor_sd_m=_SOFT_M))
 
 
 def _no_arm_search(params: ClothesParams) -> ClothesParams:

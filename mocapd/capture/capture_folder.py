@@ -16,7 +16,7 @@ from mocapd.capture.pace import Pace
 from mocapd.capture.video_times import video_times
 from mocapd.errors import ConfigError, EndOfStream, InputError, MalformedError
 from mocapd.geometry.rig_file import load_rig, read_json
-from mocapd.shirt.colour.strokes import require_pictures, stroked_pictures, strokes_beside
+from mocapd.shirt.colour.strokes import require_pictures, stroked_pictures, strokes_path
 from mocapd.types import Frame, FrameSet, Rig
 
 _LOG = logging.getLogger(__name__)
@@ -205,7 +205,7 @@ def _image_with_strokes(image: Path) -> Path | None:
     """The image; None without one. Raises InputError for an image without a stroke file."""
     if is_absent(image):
         return None
-    strokes = strokes_beside(image)
+    strokes = strokes_path(image)
     if is_absent(strokes):
         raise InputError("the strokes of this image are missing", str(strokes), "draw them again")
     return image

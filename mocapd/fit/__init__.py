@@ -1,1 +1,1 @@
-"""The articulated least-squares solver and its terms, and the limb search that rescues it."""
+"""The articulated least-squares solver and its terms, and the search for limb hypotheses."""

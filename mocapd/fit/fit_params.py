@@ -1,8 +1,8 @@
-"""Numbers of the solver and of the search for lost arms, with units and reasons."""
+"""Parameters of the solver and of the limb search, with units and reasons."""
 
 from dataclasses import dataclass
 
-TICK_S = 1.0 / 30.0  # a usual frame: what is said per frame is meant for one of this length
+TICK_S = 1.0 / 30.0  # nominal frame period: parameters per frame refer to it
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,17 +35,17 @@ class FitParams:
     elbow_sd_rad: tuple[float, float, float] = (0.5, 1.0, 1.0)
     collision_sd_m: float = 0.015  # softness of the trunk, for arms that would go into it
     limit_sd_rad: float = 0.08  # softness of the joint limits
-    narrow_rad: float = 0.26  # between the views, under which cameras count as one
-    tilt_sd_rad: float = 0.25  # of the hips, before such cameras
+    small_baseline_rad: float = 0.26  # largest angle between the views of a small baseline
+    tilt_sd_rad: float = 0.25  # of the hips, with a small baseline
 
-    depth_off_m: float = 0.10  # of what is drawn from what is seen: it is another thing
+    depth_off_m: float = 0.10  # of the drawn from the measured depth: another object
     depth_around_px: int = (
-        2  # within which that is which has the depth seen in a pixel: a patch's half [work px]
+        2  # search radius for a drawn pixel of the measured depth: a patch's half [work px]
     )
-    depth_cost: float = 1.0  # of a pixel that is, beside one that disagrees
-    # what may be off of an area that is where it is seen: the outlines of a limb have the depth of what is behind it
-    depth_usual: float = 1.6  # so many times its share that is not off confirms it
-    depth_least_px: int = 16  # compared, for an area to be judged by it
+    depth_cost: float = 1.0  # of a pixel at another depth [disagreeing pixels]
+    # tolerated share of an area at another depth: the outlines of a limb have the depth of the background
+    depth_usual: float = 1.6  # factor on the agreeing share of an area
+    depth_least_px: int = 16  # least compared pixels of an area
 
     @property
     def collision_information(self) -> float:
@@ -55,58 +55,51 @@ class FitParams:
 
 @dataclass(frozen=True, slots=True)
 class MotionPriorParams:
-    """How much a wearer moves from one usual frame to the next: these, and so many times the step before."""
+    """Motion of a wearer between nominal frames: a constant, and a multiple of the last step."""
 
     calm_m: float = 0.003
     calm_rad: float = 0.01
     calm_gain: float = 2.0
-    hidden_sd_rad: float = 0.06  # of an arm that no picture confirms
+    hidden_sd_rad: float = 0.06  # of an unconfirmed arm
 
 
 @dataclass(frozen=True, slots=True)
 class LimbSearchParams:
-    """When other poses of an arm are tried, and how many."""
+    """When the search tries other poses of an arm, and how many."""
 
     uncertain_arm: float = 0.45  # share of an arm's pixels confirmed, below which others are tried
-    nearer_px: float = 100.0  # where something is seen well before the body, above which both are
-    arm_cloud: int = 64  # tries about the present pose
+    nearer_px: float = 100.0  # well in front of the body, above which both arms are uncertain
+    arm_cloud: int = 64  # samples about the present pose
     arm_library: int = 128  # tries over the whole range, another part each frame
-    arm_reaches: int = 48  # hands tried where something is seen before the body
-    arm_fits: int = 2  # of which so many are fitted
-    farther_px: float = (
-        5.0  # how much more must speak for a pose that is farther away [disagreeing pixels/rad^2]
-    )
-    # share of an arm's area before background that denies it; where all cameras look from one side, little else does
+    arm_reaches: int = 48  # hand targets in front of the body
+    arm_fits: int = 2  # the best samples, refined by a fit
+    farther_px: float = 5.0  # cost of the distance from the present pose [disagreeing pixels/rad^2]
+    # share of an arm's area over background that rejects a pose; the main evidence with a small baseline
     empty: float = 0.25
-    empty_narrow: float = 0.5
-    # what a pose costs that arms seldom have, by its squared Mahalanobis distance: of what is seen of it [work px], and
-    # in the cost of its fit
+    empty_small_baseline: float = 0.5
+    # cost of an unusual pose by its squared Mahalanobis distance: in the image score [work px], and in the cost of its fit
     unusual_px: float = 1.4
     unusual_cost: float = 1.0
-    hand_px: float = (
-        1.0  # what a hand's pixel that is skin, or is not, counts beside one of the rest of the arm
-    )
-    hand_cost: float = 1.0  # the same beside the cost of a fit
+    hand_px: float = 1.0  # weight of a hand's skin pixel against a pixel of the arm
+    hand_cost: float = 1.0  # the same in the cost of a fit
     arm_gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]
-    # from one try of each where the other is to the next, in turns that know depths, which tell look-alikes apart; 0: never
+    # turns between attempts to exchange the arms, in turns with stereo depth; 0: never
     exchange_turns: int = 0
 
 
 @dataclass(frozen=True, slots=True)
 class LegSearchParams:
-    """When other poses of a leg are tried, and how many."""
+    """When the search tries other poses of a leg, and how many."""
 
     uncertain: float = (
         0.5  # share of its worse part's pixels confirmed, below which others are tried
     )
-    cloud: int = 48  # tries about the present pose
+    cloud: int = 48  # samples about the present pose
     library: int = 96  # tries over the range of legs, another part each frame
-    fits: int = 2  # of which so many are fitted
-    farther_px: float = 5.0  # how much more must speak for a pose that is farther away [px/rad^2]
+    fits: int = 2  # the best samples, refined by a fit
+    farther_px: float = 5.0  # cost of the distance from the present pose [px/rad^2]
     empty: float = 0.5  # share of a leg's area before background that denies it
-    unusual_px: float = (
-        1.4  # what a pose costs that legs seldom have, by its squared Mahalanobis distance
-    )
+    unusual_px: float = 1.4  # cost of an unusual pose by its squared Mahalanobis distance
     unusual_cost: float = 1.0  # the same in the cost of a fit
     tail: float = (
         25.0  # such a distance, above which more counts ever less: legs of a squat have 50 to 200

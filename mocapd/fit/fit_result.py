@@ -1,4 +1,4 @@
-"""What a fit found: the state, and how far the pictures agree with it."""
+"""Result of a fit: the state, and its agreement with the pictures."""
 
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -15,12 +15,12 @@ _CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share and number of the rendered pixels
 _IN_SIGHT = 0.10  # an arm in sight takes at least this share of all that is visible
 
 
-@dataclass(frozen=True, eq=False)  # no slots: a cached property is kept in __dict__
+@dataclass(frozen=True, eq=False)  # no slots: a cached property lives in __dict__
 class Fit:
     """The fitted state; by area (A,) the rendered, matched and wrongly placed pixels; H (P,P): the
-    information of the evidence alone on pose and shape; information (n_pose,n_pose): with what was known before;
-    in_depth (A,): share of an area's pixels that are where depths are seen, 1 where none are; nearer_px: where something is
-    seen well before all that is drawn; measured_cost: what the cost has of terms that were measured for another pose."""
+    information of the evidence alone on pose and shape; information (n_pose,n_pose): with the prior;
+    in_depth (A,): share of an area's pixels at the stereo depth, 1 without depth; nearer_px: pixels well in front of the
+    drawn body; measured_cost: part of the cost from terms that were measured at another pose."""
 
     state: MotionState
     visible: Floats
@@ -35,17 +35,17 @@ class Fit:
 
     @cached_property
     def covariance(self) -> Floats:
-        """Of the pose (n_pose,n_pose), as the pictures and what was known before leave it."""
+        """Of the pose (n_pose,n_pose), from the pictures and the prior."""
         return positive_inverse(self.information)
 
     @cached_property
     def visible_px(self) -> float:
-        """All that was rendered."""
+        """All rendered pixels."""
         return float(self.visible.sum())
 
     @cached_property
     def match(self) -> float:
-        """Share of the rendered pixels whose label the pictures have."""
+        """Share of the rendered pixels with the same label in the pictures."""
         return float(self.matched.sum() / max(self.visible_px, 1.0))
 
     @cached_property
@@ -60,7 +60,7 @@ class Fit:
 
     @cached_property
     def confirmed_arms(self) -> dict[str, float]:
-        """0..1 by side: share of an arm that the pictures confirm; one out of sight is not."""
+        """0..1 by side: share of an arm that the pictures confirm; 0 out of sight."""
         in_sight = _IN_SIGHT * self.visible_px
         confirmed = {}
         for side, p in ARM_AREAS.items():
@@ -72,5 +72,5 @@ class Fit:
 
 
 def confirmed_parts(matched: Floats | Ints, visible: Floats | Ints) -> NDArray[np.bool_]:
-    """Of which areas, or labels, so much of what is rendered is seen that it cannot be chance."""
+    """Areas, or labels, with more matched pixels than chance allows."""
     return (matched >= _CONFIRMED_PX) & (matched >= _CONFIRMED * visible)

@@ -1,4 +1,4 @@
-"""How far each joint may be from where it is told: what one frame's pictures leave open of the pose, at the joints."""
+"""Standard deviations of the joint positions, from the information of one frame's pictures on the pose."""
 
 from functools import cache
 
@@ -16,17 +16,17 @@ from mocapd.fit.positive_inverse import positive_inverse
 from mocapd.types import Floats
 
 _NECK_SD_RAD = 0.3  # people nod and look about
-# Of the evidence's information: as measured on recordings with known truth, errors of a pixel last and are shared
+# Of the evidence's information: measured against ground truth; pixel errors are correlated in time and between cameras
 _WITNESSED = 0.5
-_LEAST_M = 0.005  # nobody's joints are known better: proportions, and where in the flesh a joint is
+_LEAST_M = 0.005  # floor: proportions, and the place of a joint in the flesh
 
 
 def pose_covariance(model: BodyModel, H: Floats) -> Floats:
     """Of a pose step (n_pose,n_pose), from the information H (P,P) of one frame's evidence, the pose's first.
 
-    Not the covariance that a fit begins its next prediction with, which counts the frames before as witnesses of
-    their own: folds, proportions and lenses are as wrong in each of them, and an arm that is hidden is not better
-    known for having been guessed before. Where a picture tells nothing any usual pose is possible.
+    Not the covariance that a fit begins its next prediction with, which counts earlier frames as
+    independent: folds, proportions and lenses err alike in all of them, and a hidden arm gains no information from
+    earlier predictions. Where a picture has no evidence any usual pose is possible.
     """
     n = model.n_pose
     information = _WITNESSED * H[:n, :n]
@@ -42,7 +42,7 @@ def joint_uncertainty_m(
     So the covariance of a joint has the trace of this squared times the identity, and the distance from its true
     place is sqrt(3) times this, root mean square. joints_m (J,3), global_xyzw (J,4): a posed body of the model;
     covariance (n_pose,n_pose): of its pose step. Joints below bones that the model's pose space does not move are
-    inf, but for the head, whose neck turns only so far.
+    inf, but for the head: the neck's range is limited.
     """
     jacobian = joint_jacobian_m(model, joints_m, global_xyzw)
     variances = np.empty(N_JOINTS)
@@ -63,7 +63,7 @@ def joint_jacobian_m(model: BodyModel, joints_m: Floats, global_xyzw: Floats) ->
 
 @cache
 def _usual_information(space: PoseSpace) -> Floats:
-    """(n_pose,) of people who stand somewhere in the play area, in poses as people take them."""
+    """(n_pose,) of a person somewhere in the play area, in usual poses."""
     collar = (0.2, 0.2, 0.2)
     sd_rad = space.by_group(
         {"spine": (0.4, 0.4, 0.4), "leftShoulder": collar, "rightShoulder": collar}, 1.0

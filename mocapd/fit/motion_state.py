@@ -1,4 +1,4 @@
-"""A body in motion, as it is carried from frame to frame."""
+"""State of the tracked body: pose, velocity and shape estimate."""
 
 from dataclasses import dataclass, replace
 
@@ -14,8 +14,8 @@ from mocapd.types import Floats
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MotionState:
-    """A pose in motion: root_m (3,), local_xyzw (J,4), velocity (n_pose,) per second, and what is
-    known of the body: factors (n_shape,) with their information matrix (n_shape,n_shape)."""
+    """A pose in motion: root_m (3,), local_xyzw (J,4), velocity (n_pose,) per second, and the
+    shape estimate: factors (n_shape,) with their information matrix (n_shape,n_shape)."""
 
     root_m: Floats
     local_xyzw: Floats
@@ -25,13 +25,13 @@ class MotionState:
 
 
 def initial_information(space: PoseSpace) -> Floats:
-    """What is known of the proportions before anybody is seen."""
+    """Prior information on the proportions, before any picture."""
     return np.diag(1.0 / space.factor_sd**2)
 
 
-def known_of(shape: BodyShape, space: PoseSpace) -> tuple[Floats, Floats]:
-    """The factors (n_shape,) that a space has, of a wearer's shape, and their information matrix; the mean body's where the
-    shape tells none."""
+def shape_prior(shape: BodyShape, space: PoseSpace) -> tuple[Floats, Floats]:
+    """The factors (n_shape,) of a space from a wearer's shape, and their information matrix; the mean body's where the
+    shape has none."""
     n = min(space.n_shape, len(shape.factors))
     factors, information = np.ones(space.n_shape), initial_information(space)
     factors[:n] = shape.factors[:n]
@@ -40,19 +40,21 @@ def known_of(shape: BodyShape, space: PoseSpace) -> tuple[Floats, Floats]:
     return factors, information
 
 
-def learned(shape: BodyShape, factors: Floats, information: Floats, taught_s: float) -> BodyShape:
-    """The shape with what was learned of its first factors."""
+def update_shape(
+    shape: BodyShape, factors: Floats, information: Floats, taught_s: float
+) -> BodyShape:
+    """The shape with new estimates of its first factors."""
     if len(factors) == len(shape.factors):
         return replace(shape, factors=factors, information=information, taught_s=taught_s)
     n, all_factors = len(factors), shape.factors.copy()
     all_factors[:n] = factors
-    known = initial_information(full_body()) if shape.information is None else shape.information
-    known = known.copy()
-    known[:n, :n] = information
-    return BodyShape(shape.stature_m, all_factors, known, taught_s)
+    joint = initial_information(full_body()) if shape.information is None else shape.information
+    joint = joint.copy()
+    joint[:n, :n] = information
+    return BodyShape(shape.stature_m, all_factors, joint, taught_s)
 
 
-def stepped(
+def apply_step(
     model: BodyModel, root_m: Floats, local_xyzw: Floats, step: Floats
 ) -> tuple[Floats, Floats]:
     """root_m and local_xyzw after a step (n_pose,) of the pose parameters."""
@@ -61,16 +63,18 @@ def stepped(
     return root, local
 
 
-def moved(
+def predict_pose(
     model: BodyModel, state: MotionState, dt_s: float, damping: float = 1.0
 ) -> tuple[Floats, Floats]:
     """root_m and local_xyzw after dt_s at the state's velocity."""
-    return stepped(model, state.root_m, state.local_xyzw, state.velocity * (dt_s * damping))
+    return apply_step(model, state.root_m, state.local_xyzw, state.velocity * (dt_s * damping))
 
 
-def gone_on(model: BodyModel, state: MotionState, dt_s: float, damping: float = 1.0) -> MotionState:
-    """The state where it has gone after dt_s, see `moved`."""
-    root, local = moved(model, state, dt_s, damping)
+def predict_state(
+    model: BodyModel, state: MotionState, dt_s: float, damping: float = 1.0
+) -> MotionState:
+    """The state after dt_s at its velocity, see `predict_pose`."""
+    root, local = predict_pose(model, state, dt_s, damping)
     return replace(state, root_m=root, local_xyzw=local)
 
 

@@ -1,4 +1,4 @@
-"""The inverse of what is known: covariances of information matrices, and the other way round."""
+"""Inverse of a positive definite matrix: covariance from information, and the reverse."""
 
 from functools import cache
 

@@ -1,7 +1,7 @@
 """Fit pose and body shape to the classified pictures of all cameras at once, by Gauss-Newton.
 
-Every iteration sums what the terms say of one body: the id maps of all cameras, each at its own instant, the trunk that
-arms do not go through, and whatever terms the caller has. `solve_kernels` adds the priors and solves the small system.
+Every iteration sums the terms of one body: the id maps of all cameras, each at its own instant, collisions of the arms with
+the trunk, and the caller's terms. `solve_kernels` adds the priors and solves the small system.
 """
 
 from collections.abc import Sequence
@@ -15,11 +15,11 @@ from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.each import Each, in_turn
-from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.motion_state import MotionState, stepped
-from mocapd.fit.priors.pose_prior import narrow_prior, wide_prior
+from mocapd.fit.idmap_renderer import IdMapRenderer
+from mocapd.fit.motion_state import MotionState, apply_step
+from mocapd.fit.priors.pose_prior import small_baseline_prior, wide_baseline_prior
 from mocapd.fit.solve_kernels import gauss_newton_system
 from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.fit.terms.collision_term import CollisionTerm
@@ -31,7 +31,7 @@ from mocapd.fit.view import View, coarse
 from mocapd.types import Camera, Floats
 
 _USUAL_HZ = 30.0  # spreads about a prediction are those of such a frame
-_FACTORS = 0.6, 1.6  # nobody's proportions are beyond
+_FACTORS = 0.6, 1.6  # limits of human proportions
 
 
 class Fitter:
@@ -57,14 +57,14 @@ class Fitter:
         self._id_maps = IdMapTerm(self.drawings, model, params, each)
         self._from_eyes_m = [camera.R.T @ camera.t_m for camera in cameras]
         self.prediction_sd = _prediction_sd(model, params)
-        self._wide, self._narrow = (
-            plain(wide_prior(model, params)),
-            plain(narrow_prior(model, params)),
+        self._wide_baseline_prior, self._small_baseline_prior = (
+            plain(wide_baseline_prior(model, params)),
+            plain(small_baseline_prior(model, params)),
         )
 
     def joints(self, state: MotionState) -> tuple[Floats, Floats]:
         """Joint centres (J,3) and global rotations (J,4) of a state."""
-        posed = self._posed(state, self.shaper(state.factors))
+        posed = self._pose_joints(state, self.shaper(state.factors))
         return posed.joints, posed.quats
 
     def fit(
@@ -84,26 +84,32 @@ class Fitter:
         rendered: the prediction was drawn last into every view, so that the first iteration need
         not draw it again. fine: how many of the iterations, the last ones, look at all pixels
         (None: as many as the parameters say). motion (n_pose,n_pose): information of
-        the prediction; None for the usual, loose one. terms: what else holds or pulls the pose.
+        the prediction; None for the usual, loose one. terms: further rows of the normal equations.
         """
         p, m, n_pose = self.params, self.model, self.model.n_pose
         state, cost, measured = prediction, 0.0, 0.0
         if motion is None:
             motion = np.diag(1.0 / (self.prediction_sd**2 * max(_USUAL_HZ * dt_s, 0.5)))
         fine = p.fine_iterations if fine is None else fine
-        priors = self._narrow if self.is_narrow(prediction, views) else self._wide
+        priors = (
+            self._small_baseline_prior
+            if self.has_small_baseline(prediction, views)
+            else self._wide_baseline_prior
+        )
         evidence = held = np.zeros((n_pose, n_pose))
         coarsely = [coarse(view) for view in views]
-        known = np.ascontiguousarray(prediction.information)  # a slice would be another kernel
+        shape_information = np.ascontiguousarray(
+            prediction.information
+        )  # a slice would be another kernel
         for k in range(iterations):
             is_fine, body = k >= iterations - fine, self.shaper(state.factors)
             # proportions are a matter of a few pixels
             n_shape = m.n_shape if learn_shape and is_fine else 0
             search = self._id_maps.search(k / max(iterations - 1, 1), is_fine, k & 1)
-            seen = views if is_fine else coarsely
+            pictures = views if is_fine else coarsely
             redraw = not rendered or k > 0
-            evidence, pull = self._id_maps.system(state, body, seen, search, n_shape, redraw)
-            held, posed = evidence.copy(), self._posed(state, body)
+            evidence, pull = self._id_maps.system(state, body, pictures, search, n_shape, redraw)
+            held, posed = evidence.copy(), self._pose_joints(state, body)
             cost, measured = self.trunk.add(posed, body, held, pull), 0.0
             for term in terms:
                 added = term.add(posed, body, held, pull)
@@ -111,10 +117,10 @@ class Fitter:
                 measured += added if term.is_measured else 0.0
             A, g = gauss_newton_system(
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
-                motion, priors, prediction.factors - state.factors, known,
+                motion, priors, prediction.factors - state.factors, shape_information,
             )  # fmt: skip
             step = np.asarray(np.linalg.solve(A, g), dtype=np.float64)
-            root_m, local_xyzw = stepped(m, state.root_m, state.local_xyzw, step[:n_pose])
+            root_m, local_xyzw = apply_step(m, state.root_m, state.local_xyzw, step[:n_pose])
             factors = (
                 np.clip(state.factors + step[n_pose:], *_FACTORS) if n_shape else state.factors
             )
@@ -126,19 +132,19 @@ class Fitter:
             in_depth, nearer_px, measured,
         )  # fmt: skip
 
-    def is_narrow(self, state: MotionState, views: Sequence[View]) -> bool:
+    def has_small_baseline(self, state: MotionState, views: Sequence[View]) -> bool:
         """Whether all cameras see the body from about the same side."""
         rays = [state.root_m + self._from_eyes_m[view.index] for view in views]
-        least = np.cos(self.params.narrow_rad)
+        least = np.cos(self.params.small_baseline_rad)
         return bool(views) and all(
             a @ b > least * np.sqrt((a @ a) * (b @ b)) for a, b in combinations(rays, 2)
         )
 
     def shape_information(self, H: Floats) -> Floats:
         """What the evidence says of the shape factors (n_shape,n_shape) when the pose is free."""
-        return free_shape_information(H, self._wide[1])
+        return free_shape_information(H, self._wide_baseline_prior[1])
 
-    def _posed(self, state: MotionState, body: Shaped) -> PosedJoints:
+    def _pose_joints(self, state: MotionState, body: Shaped) -> PosedJoints:
         """At the frame set's own instant."""
         R, joints_m = np.empty((N_JOINTS, 3, 3)), np.empty((N_JOINTS, 3))
         posed = PosedJoints(body.rest, R, joints_m, np.empty((N_JOINTS, 4)))

@@ -1,4 +1,4 @@
-"""What the pictures are compared with: labels of the body's surface, as one kind of evidence tells them apart."""
+"""Labels of the body's surface, which the fit compares with the labels of the pictures."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.types import Bytes, Ints
 
-MAX_LABELS = 16  # all labels are smaller: kernels keep a bit or a list of each
+MAX_LABELS = 16  # all labels are smaller: kernels have a bit or a list of each
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.fit.body_drawing import Roi
+from mocapd.fit.idmap_renderer import Roi
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
     """One camera's evidence: ids and pixel_weight (h,w) over `roi`, taken dt_s after the asked instant; bare (h,w):
-    where skin may be, when that was looked for; depth_m (h,w): of what is seen, along the camera's axis [m], NaN where
-    that is not known."""
+    possible skin, if searched for; depth_m (h,w): stereo depth along the camera's axis [m], NaN where
+    unknown."""
 
     index: int
     roi: Roi

@@ -8,7 +8,7 @@ from mocapd.fit.rays_in_other_kernels import taken_at
 from mocapd.geometry.camera_model import normalised
 from mocapd.types import Camera, Floats, Ints
 
-_KEPT = 16  # of cameras and sizes of work pictures
+_CACHE_SIZE = 16  # of cameras and sizes of work pictures
 _BEYOND_PX = 3  # a grid's last place may lie beyond the picture
 
 
@@ -19,7 +19,7 @@ def rays_at(rays: Floats, y: Ints, x: Ints, image_scale: int) -> tuple[Floats, F
     return pixels, along
 
 
-@lru_cache(_KEPT)
+@lru_cache(_CACHE_SIZE)
 def work_rays_in_world(camera: Camera, image_scale: int) -> Floats:
     """Unit vectors (h,w,3) of all work pixels, in the world; not to be written to."""
     w, h = (side // image_scale + _BEYOND_PX for side in camera.size_px)

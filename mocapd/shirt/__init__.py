@@ -1,1 +1,1 @@
-"""The shirt in pictures: its colours, where it is seen, and the poses it may be in."""
+"""The shirt in pictures: its colours, its segmentation, and the pose database."""

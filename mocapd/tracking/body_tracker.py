@@ -10,7 +10,7 @@ from mocapd.body.skeleton import standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
 from mocapd.errors import ConfigError
-from mocapd.fit.motion_state import MotionState, gone_on, known_of, learned
+from mocapd.fit.motion_state import MotionState, predict_state, shape_prior, update_shape
 from mocapd.tracking.base import Probe, Track, lost_body, require_stature, unprobed
 from mocapd.tracking.cue_trust import CLOTHES_TRUST, SHIRT_TRUST, CueTrust
 from mocapd.tracking.cues.base import Cue
@@ -118,7 +118,7 @@ class BodyTracker:
         self._ticks.pass_to(frames.t_ns)
         present = self._look(frames)
         self.probe("picture")
-        wearer = Proportions(*known_of(shape, full_body()), shape.taught_s)
+        wearer = Proportions(*shape_prior(shape, full_body()), shape.taught_s)
         now, found = self._recent(frames.t_ns), CueFindings()
         if present:
             if now is not None:
@@ -136,7 +136,7 @@ class BodyTracker:
         self.probe("learn")
         if now is not None and self._shirt is not None:
             n = self._shirt.model.n_shape
-            shape = learned(
+            shape = update_shape(
                 shape, now.motion.factors[:n], now.motion.information[:n, :n], now.taught_s
             )
         if tracking is Tracking.LOST or now is None:
@@ -145,7 +145,7 @@ class BodyTracker:
             return Track(lost_body(frames.t_ns, self.name), shape, lost_reason=reason)
         motion = now.motion
         if not is_seen:
-            motion = gone_on(
+            motion = predict_state(
                 self._model, motion, self._coasts_s(now, frames.t_ns), self.params.damping
             )
         track = published_body(
@@ -174,7 +174,7 @@ class BodyTracker:
         """One frame of tracking; one without evidence leaves `known` at its old time."""
         t_ns, clothes, watch = frames.t_ns, self._clothes, self._watch
         dt_s = max(seconds(t_ns - known.t_ns), 1e-3)
-        predicted = gone_on(self._model, known.motion, dt_s, self.params.damping)
+        predicted = predict_state(self._model, known.motion, dt_s, self.params.damping)
         seen = trunk = whole = other = None
         if clothes is not None:
             seen = clothes.observe(predicted, t_ns, known.legs_since_ns, known.by_shirt)

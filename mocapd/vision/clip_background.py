@@ -1,8 +1,8 @@
-"""One camera's background from a recording in which somebody is seen from its first frame to its last.
+"""One camera's background from a recording with a person in view from the first frame to the last.
 
-A pixel is believed while nothing moves near it: people who stand still sway, and the room does not (stable intervals:
-Gutchess et al., A Background Model Initialization Algorithm for Video Surveillance, ICCV 2001). Where that is seldom so,
-somebody was there too often, and nothing is known; nor in what it encloses, the smooth middle of cloth.
+A pixel's colour is valid while nothing moves near it: a person at rest sways, the room does not (stable intervals:
+Gutchess et al., A Background Model Initialization Algorithm for Video Surveillance, ICCV 2001). Where that is seldom so
+a person was there too often, and the room is unknown; so is the area that such pixels enclose, the smooth middle of cloth.
 """
 
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ class ClipBackgroundParams:
     """When a pixel counts as still, and how often it must be."""
 
     apart_s: float = (
-        0.13  # between pictures that are compared: in less time hardly anybody moves a pixel
+        0.13  # between pictures that are compared: in less time a person moves less than a pixel
     )
     tolerance: float = 10.0  # of a channel, 0..255
     noises: float = 4.0  # or as often the difference that half of the picture has
@@ -35,7 +35,7 @@ class ClipBackgroundParams:
 def clip_background(
     pictures: Sequence[Bytes], times_s: Floats, params: ClipBackgroundParams | None = None
 ) -> tuple[Bytes, NDArray[np.bool_]]:
-    """The room (h,w,3) behind whoever moves in pictures (h,w,3) of times (N,) [s], and where it was seen (h,w)."""
+    """The room (h,w,3) behind moving people in pictures (h,w,3) of times (N,) [s], and its validity (h,w)."""
     p = params if params is not None else ClipBackgroundParams()
     shown = np.stack(pictures)
     still = np.stack([_still(shown, k, times_s, p) for k in range(len(shown))])
@@ -70,15 +70,15 @@ def _median_of(shown: Bytes, still: NDArray[np.bool_]) -> Bytes:
     middle = np.maximum(count - 1, 0) // 2
     room = np.zeros(shown.shape[1:], np.uint8)
     for channel in range(3):
-        # what is not still goes to the end
+        # moving pixels sort to the end
         values = np.sort(np.where(still, shown[..., channel], np.uint8(255)), axis=0)
         room[..., channel] = np.take_along_axis(values, middle[None], axis=0)[0]
     room[count == 0] = 0
     return room
 
 
-def _joined_to_the_border(known: Bytes) -> NDArray[np.bool_]:
-    """Where known (h,w) is not 0, without islands that the unknown surrounds."""
-    framed = cv2.copyMakeBorder(known, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=1)
+def _joined_to_the_border(valid: Bytes) -> NDArray[np.bool_]:
+    """Where valid (h,w) is not 0, without the islands inside invalid areas."""
+    framed = cv2.copyMakeBorder(valid, 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=1)
     _, pieces = cv2.connectedComponents(framed)
     return np.asarray(pieces == pieces[0, 0], dtype=bool)[1:-1, 1:-1]

@@ -11,7 +11,7 @@ import pytest
 from mocapd.capture.capture_folder import frame_sets, load_folder, sources_in_step
 from mocapd.capture.file import FileSource
 from mocapd.errors import ConfigError, InputError, MocapdError
-from mocapd.shirt.colour.strokes import strokes_beside
+from mocapd.shirt.colour.strokes import strokes_path
 from tests.capture.films import number_of, write_capture, write_film
 
 STAMPED = (
@@ -41,7 +41,7 @@ def test_a_folder_says_what_it_holds(tmp_path: Path) -> None:
     assert [camera.frames for camera in folder.cameras] == [12, 12]
     scribbles = [camera.scribble for camera in folder.cameras]
     assert scribbles[0] is not None
-    assert strokes_beside(scribbles[0]).name == "cam0_strokes.png"
+    assert strokes_path(scribbles[0]).name == "cam0_strokes.png"
     assert scribbles[1] is None
     assert [image.name for image in folder.model] == ["0.png", "1.png"]
 
@@ -227,7 +227,9 @@ def test_strokes_without_their_image_are_named(tmp_path: Path, folder: str) -> N
     path = write_capture(tmp_path / "capture")
     (path / folder).mkdir()
     (path / folder / "cam0_strokes.png").touch()
-    with pytest.raises(InputError, match=r"cam0_strokes\.png: the picture .* put cam0\.png beside"):
+    with pytest.raises(
+        InputError, match=r"cam0_strokes\.png: the picture .* put cam0\.png into the same folder"
+    ):
         load_folder(path)
 
 

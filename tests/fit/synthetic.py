@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from mocapd.body.model import BodyModel, build_model
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.motion_state import MotionState, initial_information, moved
+from mocapd.fit.motion_state import MotionState, initial_information, predict_pose
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
@@ -54,9 +54,9 @@ def standing(left: str = "goalpost", right: str = "side_low", yaw_rad: float = 0
     )
 
 
-def stepped(of: Fitter, state: MotionState, step: Floats) -> MotionState:
+def apply_step(of: Fitter, state: MotionState, step: Floats) -> MotionState:
     """The state moved by a pose step (n_pose,)."""
-    root, local = moved(of.model, replace(state, velocity=step), 1.0)
+    root, local = predict_pose(of.model, replace(state, velocity=step), 1.0)
     return replace(state, root_m=root, local_xyzw=local)
 
 

@@ -8,7 +8,7 @@ from mocapd.body.model import build_model
 from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.motion_state import stepped
+from mocapd.fit.motion_state import apply_step
 from mocapd.fit.terms.collision_kernels import SLICES, TorsoSlices, depth_in_torso, push_arms_out
 from mocapd.fit.terms.collision_term import TorsoHull, arm_chains
 from mocapd.geometry import rotations
@@ -16,7 +16,7 @@ from mocapd.types import Floats
 
 MODEL = build_model(1.75)
 BODY = Shaper(MODEL)(np.ones(MODEL.n_shape))
-TORSO = TorsoHull.of(MODEL).sized(BODY)
+TORSO = TorsoHull.of(MODEL).slices_of(BODY)
 ARMS = arm_chains(MODEL)
 ROOT = MODEL.rest_m[0].copy()
 
@@ -62,8 +62,8 @@ def test_rows_are_the_derivatives_of_the_cost(side: str) -> None:
     for p in range(columns.start, columns.stop):
         step = np.zeros(MODEL.n_pose)
         step[p] = 1e-5
-        ahead, _ = depth_and_rows(*stepped(MODEL, ROOT, local, step), torso)
-        back, _ = depth_and_rows(*stepped(MODEL, ROOT, local, -step), torso)
+        ahead, _ = depth_and_rows(*apply_step(MODEL, ROOT, local, step), torso)
+        back, _ = depth_and_rows(*apply_step(MODEL, ROOT, local, -step), torso)
         # the cost falls along b: d(depth^2)/dp = -2 b
         assert (ahead - back) / 2e-5 == pytest.approx(-2.0 * b[p], rel=1e-3, abs=1e-6)
 
@@ -80,7 +80,7 @@ def test_a_step_leads_out() -> None:
         forward_kinematics(MODEL.parents, BODY.rest, root, local, R, joints, quats)
         H, b = np.eye(MODEL.n_pose) * 0.01, np.zeros(MODEL.n_pose)
         push_arms_out(R, joints, MODEL.parents, plain(TORSO), plain(ARMS), 1.0, H, b)
-        root, local = stepped(
+        root, local = apply_step(
             MODEL, root, local, np.asarray(np.linalg.solve(H, b), dtype=np.float64)
         )
     assert depth_and_rows(root, local)[0] < 0.1 * before

@@ -23,7 +23,7 @@ from mocapd.geometry import rotations
 from mocapd.types import Bytes
 from tests.fit import naive_id_map_term
 from tests.fit.naive_id_map_term import Posed, Sums, posed
-from tests.fit.synthetic import CAMERAS, LABELS, MODEL, fitter, standing, stepped, views_of
+from tests.fit.synthetic import CAMERAS, LABELS, MODEL, apply_step, fitter, standing, views_of
 
 pytestmark = pytest.mark.kernels
 
@@ -93,7 +93,9 @@ def test_accumulate_equals_the_naive_twin(
     rng = np.random.default_rng(phase)
     truth, camera = standing(), CAMERAS[0]
     factors = 1.0 + rng.uniform(-0.05, 0.05, MODEL.n_shape)
-    state = replace(stepped(fitter(1), truth, rng.normal(0.0, 0.08, MODEL.n_pose)), factors=factors)
+    state = replace(
+        apply_step(fitter(1), truth, rng.normal(0.0, 0.08, MODEL.n_pose)), factors=factors
+    )
     image_ids = posed(MODEL, LABELS, truth, camera, COARSE).ids
     wrong = rng.random(image_ids.shape) < 0.1
     image_ids[wrong] = rng.integers(0, 11, wrong.sum())
@@ -176,7 +178,7 @@ def beside(by: Fitter, truth: MotionState, seed: int) -> MotionState:
     """A few centimetres and degrees away, as a prediction is."""
     rng = np.random.default_rng(seed)
     step = np.concatenate([rng.normal(0.0, 0.03, 3), rng.normal(0.0, 0.08, MODEL.n_pose - 3)])
-    return stepped(by, truth, step)
+    return apply_step(by, truth, step)
 
 
 def fitted(by: Fitter, start: MotionState, views: list[View]) -> Fit:

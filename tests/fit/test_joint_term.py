@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.motion_state import stepped
+from mocapd.fit.motion_state import apply_step
 from mocapd.fit.terms.joint_term import JointRays, JointTerm, JointTermParams
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
@@ -42,7 +42,7 @@ def test_rows_are_the_derivatives_of_the_cost() -> None:
         for sign in (1.0, -1.0):
             step = np.zeros(BODY.n_pose)
             step[k] = sign * 1e-6
-            ends.append(system(term, *stepped(BODY, ROOT, local, step))[0])
+            ends.append(system(term, *apply_step(BODY, ROOT, local, step))[0])
         slope = (ends[0] - ends[1]) / 2e-6
         assert slope == pytest.approx(-2.0 * b[k], rel=0.03, abs=5e-3 * np.abs(b).max())
 

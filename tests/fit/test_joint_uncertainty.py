@@ -12,7 +12,7 @@ from mocapd.fit.joint_uncertainty import (
     joint_uncertainty_m,
     pose_covariance,
 )
-from mocapd.fit.motion_state import stepped
+from mocapd.fit.motion_state import apply_step
 from mocapd.types import Floats
 from tests.body.random_poses import random_local, random_root
 from tests.fit.synthetic import STATURE_M, fitter, standing, views_of
@@ -51,7 +51,9 @@ def test_the_jacobian_is_that_of_numeric_differences(model: BodyModel, seed: int
     step = 1e-6
     for p in range(model.n_pose):
         ahead, behind = (
-            posed(model, *stepped(model, root_m, local, sign * step * np.eye(model.n_pose)[p]))[0]
+            posed(model, *apply_step(model, root_m, local, sign * step * np.eye(model.n_pose)[p]))[
+                0
+            ]
             for sign in (1.0, -1.0)
         )
         assert found[:, :, p] == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-7)
@@ -63,7 +65,7 @@ def test_it_is_the_spread_of_poses_that_are_drawn(model: BodyModel) -> None:
     covariance = some_covariance(model.n_pose, 7)
     told_m = joint_uncertainty_m(model, *posed(model, root_m, local), covariance)
     steps = np.random.default_rng(11).multivariate_normal(np.zeros(model.n_pose), covariance, 4000)
-    drawn_m = np.stack([posed(model, *stepped(model, root_m, local, step))[0] for step in steps])
+    drawn_m = np.stack([posed(model, *apply_step(model, root_m, local, step))[0] for step in steps])
     spread_m = np.hypot(np.sqrt(drawn_m.var(axis=0).mean(axis=1)), LEAST_M)
     moved = np.isfinite(told_m)
     moved[INDEX["head"]] = model is WHOLE  # in the smaller space its neck is not drawn

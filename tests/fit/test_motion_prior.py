@@ -88,7 +88,7 @@ def test_the_mean_arm_hangs_bent_beside_the_body() -> None:
     known = load_arm_motion()
     by, state = fitter(1), standing()
     local = state.local_xyzw.copy()
-    for side, arm in (("left", known), ("right", known.mirrored())):
+    for side, arm in (("left", known), ("right", known.mirror_arm())):
         local[[INDEX[side + bone] for bone in ("Shoulder", "UpperArm", "LowerArm")]] = arm.mean_xyzw
     joints, _ = by.joints(replace(state, local_xyzw=local))
     for side in SIDES:
@@ -100,11 +100,11 @@ def test_the_mean_arm_hangs_bent_beside_the_body() -> None:
 
 def test_the_right_arm_is_the_left_one_mirrored() -> None:
     known = load_arm_motion()
-    twice = known.mirrored().mirrored()
+    twice = known.mirror_arm().mirror_arm()
     np.testing.assert_array_equal(twice.mean_xyzw, known.mean_xyzw)
     np.testing.assert_array_equal(twice.covariance_rad2, known.covariance_rad2)
     upper = rotations.log(known.mean_xyzw[1])
     np.testing.assert_allclose(
-        rotations.log(known.mirrored().mean_xyzw[1]), upper * [1.0, -1.0, -1.0], atol=1e-12
+        rotations.log(known.mirror_arm().mean_xyzw[1]), upper * [1.0, -1.0, -1.0], atol=1e-12
     )
-    assert np.linalg.eigvalsh(known.mirrored().covariance_rad2).min() > 0.0
+    assert np.linalg.eigvalsh(known.mirror_arm().covariance_rad2).min() > 0.0

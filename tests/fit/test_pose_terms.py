@@ -12,11 +12,11 @@ from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.motion_state import MotionState, initial_information, stepped
+from mocapd.fit.motion_state import MotionState, apply_step, initial_information
 from mocapd.fit.solver import Fitter
-from mocapd.fit.terms.distance_measuring import measured_distances
 from mocapd.fit.terms.distance_term import DistanceTerm, MeasuredDistances
 from mocapd.fit.terms.floor_term import FloorParams, FloorTerm
+from mocapd.fit.terms.stereo_match_term import measured_distances
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
@@ -119,7 +119,7 @@ def test_rows_are_the_derivatives_of_the_cost(which: int) -> None:
         for sign in (1.0, -1.0):
             there = np.zeros(BODY.n_pose, dtype=np.float64)
             there[k] = sign * step
-            ends.append(system(term, *stepped(BODY, root, local, there))[0])
+            ends.append(system(term, *apply_step(BODY, root, local, there))[0])
         slope = (ends[0] - ends[1]) / (2.0 * step)
         assert slope == pytest.approx(-2.0 * b[k], rel=0.03, abs=2e-3 * np.abs(b).max())
 
@@ -129,7 +129,7 @@ def settled(term: Term, root: Floats, local: Floats) -> tuple[Floats, Floats]:
     for _ in range(10):
         _, H, b = system(term, root, local)
         step = np.asarray(np.linalg.solve(H + np.eye(len(b)), b), dtype=np.float64)
-        root, local = stepped(BODY, root, local, step)
+        root, local = apply_step(BODY, root, local, step)
     return root, local
 
 

@@ -20,7 +20,7 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import (
     MotionState,
     initial_information,
-    moved,
+    predict_pose,
     step_between,
 )
 from mocapd.fit.solver import Fitter
@@ -161,7 +161,7 @@ def test_a_recorded_pose_becomes_the_state_it_was(fitter: Fitter) -> None:
     for state, truth in ((first, before), (second, after)):
         assert fitter.joints(state)[0] == pytest.approx(fitter.joints(truth)[0], abs=1e-9)
     # back at this velocity for the time between them
-    root, local = moved(fitter.model, second, -0.1)
+    root, local = predict_pose(fitter.model, second, -0.1)
     assert root == pytest.approx(before.root_m, abs=1e-9)
     step = step_between(fitter.model, (root, local), (before.root_m, before.local_xyzw))
     assert np.abs(step).max() < 1e-6

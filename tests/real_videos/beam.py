@@ -86,7 +86,7 @@ def beam_walk(folder: Path, tiles: int, every: int = 1) -> BeamWalk:
         joints_m = tracker.step(one, shape).body.joints_m
         if joints_m is not None and number % every == 0:
             for names, shares in ((CAMERAS, inside), (OTHERS, elsewhere)):
-                before = [rooms[name].before(small[name][number]) for name in names]
+                before = [rooms[name].foreground(small[name][number]) for name in names]
                 shares[number] = share_inside([cameras[name] for name in names], joints_m, before)
         if number in pictured:
             for row, camera in zip(rows, seeing, strict=True):
@@ -117,7 +117,7 @@ def share_inside(cameras: Sequence[Camera], joints_m: Floats, before: Sequence[B
 def _room(shown: Sequence[Bytes], times_s: Sequence[float]) -> RoomBackground:
     h, w = shown[0].shape[:2]
     room = RoomBackground(h, w, BackgroundParams())
-    room.know(*clip_background(shown[::2], np.array(times_s[::2])))
+    room.set_known(*clip_background(shown[::2], np.array(times_s[::2])))
     return room
 
 

@@ -69,7 +69,9 @@ def test_white_balance_is_found_again_from_learned_colours() -> None:
 def test_transported_follows_a_change_of_brightness(gain: float) -> None:
     """A plain change of brightness is what it is drawn towards, so nothing is left over."""
     before = ShirtAppearance(np.eye(3), statistics(np.eye(3), np.full(10, 300.0)))
-    after = looks.transported(before, statistics(gain * np.eye(3), np.full(10, 150.0)), MODEL_MEAN)
+    after = looks.adapt_to_light(
+        before, statistics(gain * np.eye(3), np.full(10, 150.0)), MODEL_MEAN
+    )
     np.testing.assert_allclose(mean_of(after), gain * MODEL_MEAN[:, ::-1], atol=1e-9)
 
 
@@ -78,7 +80,7 @@ def test_transported_follows_a_change_of_colour(seen: range) -> None:
     """Drawn to plain brightness by a ridge, it comes most of the way; colours not seen come along."""
     counts = np.where(np.isin(np.arange(10), list(seen)), 200.0, 0.0)
     before = ShirtAppearance(np.eye(3), statistics(np.eye(3), np.full(10, 300.0)))
-    after = looks.transported(before, statistics(COLD_LAMP, counts), MODEL_MEAN)
+    after = looks.adapt_to_light(before, statistics(COLD_LAMP, counts), MODEL_MEAN)
     wanted = (MODEL_MEAN @ COLD_LAMP.T)[:, ::-1]
     off_before = np.abs(mean_of(before) - wanted).max(axis=1)
     off_after = np.abs(mean_of(after) - wanted).max(axis=1)
@@ -91,6 +93,6 @@ def test_transported_believes_no_lamp_that_cannot_be() -> None:
     """Colours that changed places: the pose is wrong, not the light."""
     before = ShirtAppearance(np.eye(3), statistics(np.eye(3), np.full(10, 300.0)))
     wrong = statistics(np.eye(3)[[1, 0, 2]], np.full(10, 200.0))
-    assert looks.transported(before, wrong, MODEL_MEAN) is before
+    assert looks.adapt_to_light(before, wrong, MODEL_MEAN) is before
     nothing = np.zeros((10, 4))
-    assert looks.transported(before, nothing, MODEL_MEAN) is before
+    assert looks.adapt_to_light(before, nothing, MODEL_MEAN) is before

@@ -6,9 +6,9 @@ from mocapd.body.arrays import plain
 from mocapd.fit.solver import Fitter
 from mocapd.shirt.segmentation import shirt_appearance as looks
 from mocapd.shirt.segmentation.bare_skin import (
+    add_statistics,
     face_disc,
     hand_sized,
-    learned,
     statistics,
     whitening,
 )
@@ -96,13 +96,13 @@ def test_it_follows_the_light() -> None:
     sums = np.zeros(4)
     bright = np.array([50.0, 20.0, 25.0, 35.0])
     for _ in range(30):
-        sums = learned(sums, bright, 0.1, 1.0)
+        sums = add_statistics(sums, bright, 0.1, 1.0)
     np.testing.assert_allclose(sums[1:] / sums[0], bright[1:] / 50.0)
     dark = bright * np.array([1.0, 0.5, 0.5, 0.5])
     for _ in range(30):
-        sums = learned(sums, dark, 0.1, 1.0)
+        sums = add_statistics(sums, dark, 0.1, 1.0)
     np.testing.assert_allclose(sums[1:] / sums[0], dark[1:] / 50.0, rtol=0.1)
-    np.testing.assert_array_equal(learned(sums, np.zeros(4), 0.1, 1.0), sums)
+    np.testing.assert_array_equal(add_statistics(sums, np.zeros(4), 0.1, 1.0), sums)
 
 
 def classified(seen: Bytes, skin: Floats) -> Bytes:

@@ -14,7 +14,7 @@ from mocapd.shirt.colour.strokes import (
     read_labelled,
     read_strokes,
     stroked_pictures,
-    strokes_beside,
+    strokes_path,
 )
 from mocapd.types import Bytes
 
@@ -112,7 +112,7 @@ def test_pictures_of_a_folder_are_not_their_strokes_and_labels(tmp_path: Path) -
         (tmp_path / f"{name}.png").touch()
     pictures = stroked_pictures(tmp_path)
     assert [path.name for path in pictures] == ["0.png", "left_1.png"]
-    assert strokes_beside(pictures[1]).name == "left_1_strokes.png"
+    assert strokes_path(pictures[1]).name == "left_1_strokes.png"
 
 
 def test_strokes_must_fit_their_image(tmp_path: Path) -> None:

@@ -51,7 +51,7 @@ def test_maps_know_left_from_right_by_name() -> None:
 
 def test_nobody_is_seen_in_an_empty_room_with_certainty() -> None:
     grey = np.full((INPUT_PX, INPUT_PX, 3), 120, np.uint8)
-    seen = JointNetwork().look(
+    seen = JointNetwork().detect(
         grey, grey.astype(np.float32), np.ones((INPUT_PX, INPUT_PX), np.uint8)
     )
     arms = [

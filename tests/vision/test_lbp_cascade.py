@@ -14,7 +14,7 @@ from mocapd.vision.face.face_detection import (
     face_sizes,
     face_windows,
     faces_near,
-    grouped,
+    group_windows,
 )
 from mocapd.vision.face.lbp_cascade import frontal_faces, read_cascade
 from mocapd.vision.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays, lbp_code, scan
@@ -77,7 +77,7 @@ def test_a_scan_in_steps_finds_what_the_windows_beside_a_promising_one_hold(
 @pytest.mark.parametrize(("x", "y", "size"), [(60.0, 50.0, 24.0), (130.0, 90.0, 48.0), (99.0, 70.0, 72.0)])  # fmt: skip
 def test_a_face_is_found_where_it_is(toy: CascadeArrays, x: float, y: float, size: float) -> None:
     windows = face_windows(toy, picture_with(x, y, size), face_sizes(20.0, 110.0))
-    (box, *others) = grouped(windows, 2)
+    (box, *others) = group_windows(windows, 2)
     assert not others
     assert np.hypot(box.x_px - x, box.y_px - y) < 0.1 * size
     assert 0.75 < box.size_px / size < 1.25
@@ -101,11 +101,11 @@ def test_windows_of_two_faces_stay_two_groups() -> None:
     one = [[10.0, 10.0, 24.0], [11.0, 10.0, 26.0], [12.0, 9.0, 24.0]]
     other = [[60.0, 10.0, 24.0], [61.0, 10.0, 24.0]]
     windows = np.array(one + other)
-    first, second = grouped(windows, 2)
+    first, second = group_windows(windows, 2)
     assert (first.windows, second.windows) == (3, 2)
     middle = (first.x_px, first.y_px, first.size_px)
     assert middle == pytest.approx(tuple(np.mean(one, axis=0)))
-    assert grouped(windows, 3) == (first,)
+    assert group_windows(windows, 3) == (first,)
 
 
 @given(least=st.floats(5.0, 100.0), ratio=st.floats(0.5, 20.0))
@@ -131,4 +131,4 @@ def test_the_packaged_cascade_sees_no_face_in_noise_and_has_the_window_it_is_sli
     assert len(cascade.threshold) == 20
     assert (cascade.rects[:, :2] + 3 * cascade.rects[:, 2:] <= WINDOW_PX).all()
     noise = np.random.default_rng(0).integers(0, 256, (240, 320), dtype=np.uint8)
-    assert not grouped(face_windows(cascade, noise, face_sizes(24.0, 100.0)), 3)
+    assert not group_windows(face_windows(cascade, noise, face_sizes(24.0, 100.0)), 3)

@@ -11,8 +11,8 @@ from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import joint_positions
 from mocapd.calibrate.verification.check_measure import EVERY, Measure, MeasuringTracker
-from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.fit_params import FitParams
+from mocapd.fit.idmap_renderer import IdMapRenderer, image_scales
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.geometry import rotations
 from mocapd.tracking.base import Probe, Track, unprobed

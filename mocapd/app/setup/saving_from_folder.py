@@ -22,7 +22,7 @@ from mocapd.calibration.saved_calibration import (
 from mocapd.config.sections import CameraSection
 from mocapd.errors import InputError
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
-from mocapd.shirt.colour.strokes import read_labelled, require_pictures, strokes_beside
+from mocapd.shirt.colour.strokes import read_labelled, require_pictures, strokes_path
 from mocapd.types import Camera, Floats, LabelledPicture, Rig
 from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name
 
@@ -38,7 +38,7 @@ def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
         if not is_file(image):
             continue
         picture = read_labelled(image)
-        require_good_strokes(picture.pixels, picture.labels, model, str(strokes_beside(image)))
+        require_good_strokes(picture.pixels, picture.labels, model, str(strokes_path(image)))
         pictures[camera.name] = picture
     if not pictures:
         names = ", ".join(f"{name}.png" for name in rig.names)

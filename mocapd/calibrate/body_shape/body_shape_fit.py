@@ -15,13 +15,13 @@ from mocapd.body.skeleton import local_from_global, standard_skeleton
 from mocapd.calibrate.self_calibration.body_rows import BodyRows, RowGatherer
 from mocapd.clock import seconds
 from mocapd.errors import InputError
-from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
+from mocapd.fit.idmap_renderer import image_scales
 from mocapd.fit.motion_state import (
     MotionState,
+    apply_step,
     initial_information,
     step_between,
-    stepped,
 )
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
@@ -204,7 +204,7 @@ class _Evidence:
 def _follow_shape(
     model: BodyModel, state: MotionState, follow: _Follow, step: Floats
 ) -> MotionState:
-    root, local = stepped(model, state.root_m, state.local_xyzw, follow[1] - follow[0] @ step)
+    root, local = apply_step(model, state.root_m, state.local_xyzw, follow[1] - follow[0] @ step)
     return replace(state, root_m=root, local_xyzw=local)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model
 from mocapd.shirt.colour.from_pictures import white_balances
-from mocapd.shirt.colour.white_balance import balanced
+from mocapd.shirt.colour.white_balance import apply_white_balance
 from mocapd.types import LabelledPicture
 
 
@@ -19,7 +19,7 @@ def personal_colour_model(
     """
     W = white_balances(pictures, model)
     return fit_colour_model(
-        [balanced(p.pixels, W[name]) for name, p in pictures.items()],
+        [apply_white_balance(p.pixels, W[name]) for name, p in pictures.items()],
         [p.labels for p in pictures.values()],
         model.names,
         f"{model.version} (personal)",

@@ -15,8 +15,8 @@ from mocapd.body.skeleton import INDEX
 from mocapd.calibrate.colours.light_hypotheses import light_hypotheses
 from mocapd.calibrate.colours.light_refinement import IDLE_TURNS, LightRefinement, Reading
 from mocapd.errors import InputError
-from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.fit_result import Fit
+from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.view import View
 from mocapd.geometry.rotations import IDENTITY_XYZW

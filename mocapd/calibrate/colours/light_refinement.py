@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.body.model import build_model
-from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.fit_result import Fit, confirmed_parts
+from mocapd.fit.idmap_renderer import IdMapRenderer, image_scales
 from mocapd.fit.limbs.arm_search import ArmSearch
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter

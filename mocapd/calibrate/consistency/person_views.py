@@ -19,8 +19,8 @@ from mocapd.vision.heatmaps.joint_network import (
     MIDDLE,
     SIDE_M,
     STATURE_M,
+    DetectedJoints,
     JointNetwork,
-    SeenJoints,
 )
 
 WORK_PX = 320  # the longer side of the pictures
@@ -175,7 +175,7 @@ class PersonFinder:
 
     def _look(
         self, picture: Bytes, room: ViewedRoom, side: float, middle: Floats
-    ) -> tuple[Floats, SeenJoints]:
+    ) -> tuple[Floats, DetectedJoints]:
         """Joints (J,2) in a picture's pixels, in the crop of this side about this middle."""
         scale = INPUT_PX / side
         corner = INPUT_PX / 2 - 0.5 - scale * middle
@@ -184,7 +184,7 @@ class PersonFinder:
         small = cv2.warpAffine(picture, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
         back = cv2.warpAffine(room.picture, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
         there = cv2.warpAffine(room.valid, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))
-        detection = self._network.look(
+        detection = self._network.detect(
             np.asarray(small, np.uint8), np.asarray(back, np.float32), np.asarray(there, np.uint8)
         ).of_body
         crop_px = detection.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
@@ -275,7 +275,7 @@ def _rotate_picture(picture: Bytes, turns: int) -> Bytes:
     return np.ascontiguousarray(np.rot90(picture, turns, (0, 1))) if turns else picture
 
 
-def _spread(detection: SeenJoints) -> Floats:
+def _spread(detection: DetectedJoints) -> Floats:
     """Spread of each joint's map (J,) [cells]."""
     return np.sqrt(detection.spread_cells2[:, 0] + detection.spread_cells2[:, 2])
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.motion_state import MotionState, predict_pose
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.id_map_kernels import ComparedPictures
 from mocapd.fit.terms.id_map_sums import CameraSums, search_within
@@ -60,7 +60,7 @@ class RowGatherer:
         fitter, model = self.fitter, self.fitter.model
         rows = CameraSums(model)
         drawing, body = fitter.drawings[view.index], fitter.shaper(state.factors)
-        drawn = drawing.draw(*moved(model, state, view.dt_s), body, view.roi)
+        drawn = drawing.draw(*predict_pose(model, state, view.dt_s), body, view.roi)
         rows.gather(
             drawing, body, ComparedPictures(*drawn, view.ids, view.pixel_weight), self._search,
             model.n_pose + model.n_shape, fitter.params.row_weight,

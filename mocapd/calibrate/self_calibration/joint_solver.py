@@ -18,9 +18,9 @@ from mocapd.calibrate.self_calibration.camera_uncertainty import CameraUncertain
 from mocapd.calibrate.self_calibration.keyframes import Keyframe, initial_states, keyframe_views
 from mocapd.calibrate.self_calibration.surface_residuals import FreeBody, free_body
 from mocapd.errors import ConfigError
-from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.motion_state import MotionState, stepped
+from mocapd.fit.idmap_renderer import image_scales
+from mocapd.fit.motion_state import MotionState, apply_step
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
@@ -231,7 +231,9 @@ class JointSolver:
         for k, (state, follow) in enumerate(zip(scene.states, evidence.follows, strict=True)):
             root, local = state.root_m, state.local_xyzw
             if follow is not None:
-                root, local = stepped(self._body.model, root, local, follow[1] - follow[0] @ step)
+                root, local = apply_step(
+                    self._body.model, root, local, follow[1] - follow[0] @ step
+                )
             scene.states[k] = replace(state, root_m=root, local_xyzw=local, factors=scene.factors)
 
     def _pose_information(self) -> Floats:

@@ -13,10 +13,10 @@ from mocapd.body.model import BodyModel
 from mocapd.calibrate.self_calibration.keyframes import Keyframe, initial_states, keyframe_views
 from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation, PatchSighting
 from mocapd.clock import seconds
-from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.motion_state import MotionState, gone_on, step_between
+from mocapd.fit.idmap_renderer import image_scales
+from mocapd.fit.motion_state import MotionState, predict_state, step_between
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
@@ -72,12 +72,12 @@ class _Follower:
 
     def sighting(self, fit: Fit, own: PatchSighting, camera: Camera, dt_s: float) -> PatchSighting:
         """A camera's sighting with the common body, dt_s later."""
-        joints, quats = self._fitter.joints(gone_on(self._model, fit.state, dt_s))
+        joints, quats = self._fitter.joints(predict_state(self._model, fit.state, dt_s))
         turned = rotations.multiply(rotations.from_matrix(camera.R), quats)
         return replace(own, joints_m=to_camera(camera, joints), quats_xyzw=turned)
 
     def _predict(self, last: MotionState, views: Sequence[View], dt_s: float) -> Fit:
-        state = gone_on(self._model, last, dt_s, _DAMPING)
+        state = predict_state(self._model, last, dt_s, _DAMPING)
         return self._fitter.fit(state, views, dt_s, _ITERATIONS)
 
 

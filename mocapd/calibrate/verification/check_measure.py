@@ -11,9 +11,9 @@ from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, local_from_global
 from mocapd.calibrate.self_calibration.body_rows import RowGatherer
 from mocapd.clock import nanoseconds, seconds
-from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.motion_state import MotionState, initial_information, known_of, step_between
+from mocapd.fit.idmap_renderer import image_scales
+from mocapd.fit.motion_state import MotionState, initial_information, shape_prior, step_between
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.geometry.camera_model import to_camera
@@ -80,7 +80,7 @@ class MeasuringTracker:
         self._fitter = Fitter(model, labels, rig.cameras, self._work, params)
         self._rows = RowGatherer(self._fitter, _RADIUS_PX)
         self._index = {camera.name: i for i, camera in enumerate(rig.cameras)}
-        self._factors = known_of(shape, model.space)[0]
+        self._factors = shape_prior(shape, model.space)[0]
         self._last: tuple[int, Floats, Floats] | None = None
         self._turn = 0
 

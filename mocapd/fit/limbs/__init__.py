@@ -1,1 +1,1 @@
-"""Arms and legs that do not agree with the pictures: other poses of them are tried, the best is kept."""
+"""Hypothesis search for arms and legs that disagree with the pictures."""

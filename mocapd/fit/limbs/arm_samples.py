@@ -13,7 +13,7 @@ from mocapd.fit.limbs.limb_search_kernels import ArmSamples
 from mocapd.fit.surface_labels import MAX_LABELS, SurfaceLabels
 from mocapd.types import Floats, Ints
 
-SKIN_LABEL = MAX_LABELS - 1  # beside those that a surface has
+SKIN_LABEL = MAX_LABELS - 1  # after the surface's labels
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,7 +79,7 @@ def _samples(
     )  # fmt: skip
 
 
-def placed(body: Shaped, arm: Arm, of: SurfaceSamples) -> ArmSamples:
+def place_samples(body: Shaped, arm: Arm, of: SurfaceSamples) -> ArmSamples:
     """Samples on a body of this shape, in the T-pose."""
     corners = body.vertices[of.corners]
     normals = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -1,4 +1,4 @@
-"""When an arm does not agree with the pictures: other poses of it are tried, the best is kept."""
+"""Hypothesis search for an arm that disagrees with the pictures: sample, score and refine other poses."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -11,10 +11,10 @@ from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.arm_samples import Arm, arm_of
 from mocapd.fit.limbs.arms_exchanged import with_arms_exchanged
+from mocapd.fit.limbs.hand_target_poses import hand_target_poses
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
 from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
-from mocapd.fit.limbs.limb_scores import know_depths, score_arm_poses, score_hand_places
-from mocapd.fit.limbs.reaching import reaching_poses
+from mocapd.fit.limbs.limb_scores import has_depths, score_arm_poses, score_hand_places
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.priors.pose_prior import arm_motions, unusualness
 from mocapd.fit.solver import Fitter
@@ -24,7 +24,7 @@ from mocapd.geometry import rotations
 from mocapd.types import Floats
 
 _LIBRARY = 2048
-_EXCHANGE_ITERATIONS = 4  # both arms have a longer way than one that was searched
+_EXCHANGE_ITERATIONS = 4  # both arms start farther from the optimum than a sampled one
 
 
 class ArmSearch:
@@ -40,8 +40,8 @@ class ArmSearch:
         self._cloud = (2.0 * u - 1.0) * near * np.array([1.0, 1.0, 1.0, 0.5, 1.2, 0.5])
 
     def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
-        """Run the search once for nothing: ordinary frames do not reach its kernels, and the first
-        uncertain arm must not wait for them to be compiled or loaded."""
+        """Warm up: compile or load the search's kernels, which ordinary frames do not reach, before the first
+        uncertain arm."""
         for side, arm in self.arms.items():
             tries = candidates(
                 self.fitter, state, arm, views, self._cloud[:1], self._library[side][:1]
@@ -66,11 +66,13 @@ class ArmSearch:
         if not any(is_uncertain(side, fit, p) for side in self.arms):
             return fit, ()
         changed = []
-        empty = p.empty_narrow if self.fitter.is_narrow(fit.state, views) else p.empty
+        empty = (
+            p.empty_small_baseline if self.fitter.has_small_baseline(fit.state, views) else p.empty
+        )
         refit = partial(
             self.fitter.fit, views=views, dt_s=dt_s, iterations=3, learn_shape=learn_shape, fine=1, terms=terms
         )  # fmt: skip
-        exchanges = bool(p.exchange_turns) and turn % p.exchange_turns == 0 and know_depths(views)
+        exchanges = bool(p.exchange_turns) and turn % p.exchange_turns == 0 and has_depths(views)
         for side, arm in self.arms.items():
             if not is_uncertain(side, fit, p):
                 continue
@@ -97,13 +99,13 @@ class ArmSearch:
         cloud = part(self._cloud, turn, p.arm_cloud)
         library = part(self._library[arm.side], turn, p.arm_library)
         tries = candidates(self.fitter, state, arm, views, cloud, library)
-        reaching = reaching_poses(self.fitter, state, arm, views, p.arm_reaches, turn)
+        reaching = hand_target_poses(self.fitter, state, arm, views, p.arm_reaches, turn)
         return np.concatenate([tries, reaching])
 
     def _scores(
         self, state: MotionState, arm: Arm, views: Sequence[View], tries: Floats, empty: float
     ) -> Floats:
-        """How much of each try, and of its hand, is seen, less what contradicts it (N,) [work px]."""
+        """Image score of each hypothesis and its hand, less its penalties (N,) [work px]."""
         p = self.params
         scores = score_arm_poses(self.fitter, state, arm, views, tries, p.farther_px, empty)
         scores -= p.unusual_px * unusualness(tries, self._usual[arm.side])
@@ -113,27 +115,27 @@ class ArmSearch:
     def _cost(
         self, arm: Arm, here_xyzw: Floats, views: Sequence[View], empty: float, fit: Fit
     ) -> float:
-        """Of a fit, with what its pose of an arm (3,4) costs beside what the pictures say, and its hand."""
+        """Cost of a fit, with the prior on its arm pose (3,4) and the score of its hand."""
         there = fit.state.local_xyzw[arm.chain[:3]]
         price = self._price(arm.side, there, here_xyzw)
         return fit.cost_for_any_pose + price - self._hand_px(arm, fit, views, empty)
 
     def _cost_of_both(self, fit: Fit) -> float:
-        """Of a fit, with what the poses of its arms cost for being seldom seen."""
+        """Cost of a fit, with the prior on both arm poses."""
         local = fit.state.local_xyzw
         unusual = sum(self._unusual(side, local[arm.chain[:3]]) for side, arm in self.arms.items())
         return fit.cost_for_any_pose + self.params.unusual_cost * unusual
 
     def _hand_px(self, arm: Arm, fit: Fit, views: Sequence[View], empty: float) -> float:
-        """How much of the hand is seen where this fit has it, in the measure of its cost."""
+        """Image score of the hand in this fit, in the unit of its cost."""
         if self.params.hand_cost == 0.0:
             return 0.0
         pose = fit.state.local_xyzw[arm.chain[:3]][None]
-        seen_px = score_hand_places(self.fitter, fit.state, arm, views, pose, empty)
-        return self.params.hand_cost * float(seen_px[0])
+        score_px = score_hand_places(self.fitter, fit.state, arm, views, pose, empty)
+        return self.params.hand_cost * float(score_px[0])
 
     def _price(self, side: str, there_xyzw: Floats, here_xyzw: Floats) -> float:
-        """What a pose (3,4) of an arm costs beside what the pictures say: it is seldom seen, or far from here."""
+        """Prior cost of an arm pose (3,4): unusual, or far from the present pose."""
         p = self.params
         unusual = self._unusual(side, there_xyzw)
         away_rad2 = float(turned_rad2(there_xyzw[None, 1:], here_xyzw[1:])[0])
@@ -145,7 +147,7 @@ class ArmSearch:
 
 
 def is_uncertain(side: str, fit: Fit, params: LimbSearchParams) -> bool:
-    """Whether too little of an arm is confirmed by the pictures, or they show what only an arm can be."""
+    """Whether the pictures confirm too little of an arm, or show an object well in front of the body."""
     return fit.confirmed_arms[side] < params.uncertain_arm or fit.nearer_px > params.nearer_px
 
 

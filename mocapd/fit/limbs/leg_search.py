@@ -1,4 +1,4 @@
-"""When a leg does not agree with the pictures: other poses of it are tried, the best is kept.
+"""Hypothesis search for a leg that disagrees with the pictures: sample, score and refine other poses.
 
 A knee that comes up in a tenth of a second is out of the fit's reach, and a leg that slipped onto the other one stays there.
 As for arms (`arm_search.py`): mirror images in depth, a cloud about the present pose, and poses that legs have.
@@ -13,7 +13,7 @@ from mocapd.body.areas import Area
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.fit_params import LegSearchParams
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.limbs.arm_samples import Arm, leg_of, placed
+from mocapd.fit.limbs.arm_samples import Arm, leg_of, place_samples
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
 from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
 from mocapd.fit.limbs.limb_scores import PX_OF_M2, added_in_views
@@ -30,14 +30,14 @@ _AREAS = {
     "right": [Area.RIGHT_THIGH, Area.RIGHT_SHIN],
 }
 _LIBRARY = 1024
-_IN_SIGHT = 0.02  # of all pixels that are drawn; a leg with fewer is not asked
+_IN_SIGHT = 0.02  # of all drawn pixels; the search skips a leg with fewer
 
 
 class LegSearch:
     """Tries other poses of legs that the pictures do not confirm."""
 
     def __init__(self, fitter: Fitter, params: LegSearchParams) -> None:
-        """fitter: of a whole body whose legs' pixels are counted."""
+        """fitter: of a whole body with labelled legs."""
         self.fitter, self.params = fitter, params
         self.legs = {side: leg_of(fitter.model, fitter.labels, side) for side in SIDES}
         u = spread(_LIBRARY)
@@ -46,7 +46,7 @@ class LegSearch:
         self._library = {side: _library(u, side, params.squats) for side in SIDES}
 
     def rehearse(self, state: MotionState, views: Sequence[View]) -> None:
-        """Run the search once for nothing: the first uncertain leg must not wait for its kernels to be compiled or loaded."""
+        """Warm up: compile or load the search's kernels before the first uncertain leg."""
         for leg in self.legs.values():
             self._scores(state, leg, views, self._candidates(state, leg, views, 0)[:1])
 
@@ -69,7 +69,7 @@ class LegSearch:
             self.fitter.fit, views=views, dt_s=dt_s, iterations=3, fine=1, motion=motion, terms=terms
         )  # fmt: skip
         for side, leg in self.legs.items():
-            if confirmed(side, fit) >= p.uncertain:
+            if confirmed_share(side, fit) >= p.uncertain:
                 continue
             tries = self._candidates(fit.state, leg, views, turn)
             scores = self._scores(fit.state, leg, views, tries)
@@ -90,9 +90,9 @@ class LegSearch:
         return candidates(self.fitter, state, leg, views, cloud, library, first=0)
 
     def _scores(self, state: MotionState, leg: Arm, views: Sequence[View], tries: Floats) -> Floats:
-        """How much of each try is seen where the rest of the body is not, less what contradicts it (N,) [work px]."""
+        """Image score of each hypothesis outside the rest of the body, less its penalties (N,) [work px]."""
         p = self.params
-        samples = placed(self.fitter.shaper(state.factors), leg, leg.labelled)
+        samples = place_samples(self.fitter.shaper(state.factors), leg, leg.labelled)
         none = np.zeros(len(tries))
         scores = added_in_views(self.fitter, state, leg, views, samples, tries, p.empty, none)
         away_rad2 = turned_rad2(tries[:, :2], tries[0, :2])
@@ -101,7 +101,7 @@ class LegSearch:
         return out
 
     def _cost(self, leg: Arm, here_xyzw: Floats, fit: Fit) -> float:
-        """Of a fit, with what its pose of a leg costs beside the pictures: it is seldom seen, or far from here (3,4)."""
+        """Cost of a fit, with the prior on its leg pose: unusual, or far from here (3,4)."""
         p = self.params
         there = fit.state.local_xyzw[leg.chain[:3]]
         away_rad2 = float(turned_rad2(there[None, :2], here_xyzw[:2])[0])
@@ -109,7 +109,7 @@ class LegSearch:
         return fit.cost_for_any_pose + (p.unusual_cost * unusual + p.farther_px * away_rad2)
 
 
-def confirmed(side: str, fit: Fit) -> float:
+def confirmed_share(side: str, fit: Fit) -> float:
     """0..1: share of its pixels that the pictures confirm, of the worse of thigh and shank; 1 for what is hardly in sight."""
     mine = _AREAS[side]
     asked = fit.visible[mine] + fit.unexplained[mine]

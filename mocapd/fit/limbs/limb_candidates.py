@@ -1,4 +1,4 @@
-"""What to try where a limb does not agree with the pictures: its mirror images, clouds of poses, and the best of all tries.
+"""Pose hypotheses of a limb: mirror images in depth, low-discrepancy samples, and the best distinct ones.
 
 A tracked limb can slip into a pose that looks right to one camera. Candidates are its mirror images
 in depth along each camera's view (the two poses of a segment that project alike, Sminchisescu and
@@ -85,8 +85,8 @@ def best_poses(bones_xyzw: Floats, scores: Floats, keep: int) -> list[int]:
     for n in np.argsort(-scores, kind="stable").tolist():
         if n == 0 or len(out) == keep:
             break
-        # a hypothesis close to one already kept would end where that one ends
-        if not any(_is_alike(bones_xyzw[n], bones_xyzw[kept]) for kept in out):
+        # close hypotheses converge to the same optimum
+        if not any(_is_alike(bones_xyzw[n], bones_xyzw[other]) for other in out):
             out.append(n)
     return out
 

@@ -1,4 +1,4 @@
-"""Tries of a limb are fitted to the pictures, and the cheapest fit is kept if it is worth the change."""
+"""Refine limb hypotheses by a fit, and take the cheapest if its gain exceeds a threshold."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace

@@ -1,12 +1,12 @@
-"""How much of each try of a limb is seen where the rest of the body is not, less what contradicts it."""
+"""Image score of each limb hypothesis: supporting pixels outside the rest of the body, less contradicting ones."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.fit.body_drawing import PartialRender
-from mocapd.fit.limbs.arm_samples import SKIN_LABEL, Arm, placed
+from mocapd.fit.idmap_renderer import PartialRender
+from mocapd.fit.limbs.arm_samples import SKIN_LABEL, Arm, place_samples
 from mocapd.fit.limbs.limb_candidates import turned_rad2
 from mocapd.fit.limbs.limb_search_kernels import ArmSamples, score_arms, trunk_depths
 from mocapd.fit.motion_state import MotionState
@@ -18,8 +18,8 @@ PX_OF_M2 = 3.7e4  # work pixels that a square metre takes, by its distance [px m
 _NO_DEPTHS = np.empty((0, 0), np.float32)
 
 
-def know_depths(views: Sequence[View]) -> bool:
-    """Whether some view tells what is before what, also where all looks alike."""
+def has_depths(views: Sequence[View]) -> bool:
+    """Whether some view has stereo depth."""
     return any(view.depth_m is not None for view in views)
 
 
@@ -32,14 +32,14 @@ def score_arm_poses(
     farther: float,
     empty: float,
 ) -> Floats:
-    """How much of each hypothesis (N,3,4) is seen, less what contradicts it and what is in the trunk (N,) [work px].
+    """Image score of each hypothesis (N,3,4), less a penalty for the depth in the trunk (N,) [work px].
 
-    farther: by how much more must be seen of a pose that is a radian away from the first [work px/rad^2]; empty: share of
-    what lies where the picture shows no label that contradicts it.
+    farther: penalty for the distance from the first pose [work px/rad^2]; empty: weight of the pixels without a label
+    against it.
     """
     model = fitter.model
     body, arms = fitter.shaper(state.factors), fitter.trunk.arms
-    samples = placed(body, arm, arm.labelled)
+    samples = place_samples(body, arm, arm.labelled)
     scores = -farther / PX_OF_M2 * turned_rad2(hypotheses[:, 1:], hypotheses[0, 1:])
     fitter.drawings[views[0].index].pose(state.root_m, state.local_xyzw, body.rest)
     depths_m2 = np.empty(len(hypotheses))
@@ -48,11 +48,11 @@ def score_arm_poses(
         arms.hips, arms.chest, arms.top, depths_m2,
     )  # fmt: skip
     scores -= fitter.params.collision_information / PX_OF_M2 * depths_m2
-    # an arm before a trunk that looks like it is told by depths
-    covered = 0.0 if know_depths(views) else 1.0
+    # stereo depth separates an arm from a trunk of the same colour
+    covered = 0.0 if has_depths(views) else 1.0
     scores = added_in_views(fitter, state, arm, views, samples, hypotheses, empty, scores, covered)
-    seen_px: Floats = PX_OF_M2 * scores
-    return seen_px
+    score_px: Floats = PX_OF_M2 * scores
+    return score_px
 
 
 def score_hand_places(
@@ -63,23 +63,23 @@ def score_hand_places(
     hypotheses: Floats,
     empty: float,
 ) -> Floats:
-    """How much of the hand of each hypothesis (N,3,4) is seen as bare skin that neither the head nor the other hand is,
-    less what contradicts it (N,) [work px]; 0 where nobody looked for skin. empty: as for arms."""
+    """Skin score of the hand of each hypothesis (N,3,4) outside the head and the other hand, less contradicting pixels
+    (N,) [work px]; 0 without a skin mask. empty: as for arms."""
     none = np.zeros(len(hypotheses))
     looked = [view for view in views if view.bare is not None]
     if not looked:
         return none
-    samples = placed(fitter.shaper(state.factors), arm, arm.hand)
+    samples = place_samples(fitter.shaper(state.factors), arm, arm.hand)
 
-    def seen_in(view: View) -> Floats:
+    def score_in(view: View) -> Floats:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
         drawn = np.where(arm.is_skin[base.triangle_at], np.uint8(SKIN_LABEL), base.ids)
         assert view.bare is not None
-        seen = np.where(view.bare, np.uint8(SKIN_LABEL), view.ids)
-        return _scores_in_view(fitter, view, base, drawn, seen, samples, hypotheses, empty)
+        shown = np.where(view.bare, np.uint8(SKIN_LABEL), view.ids)
+        return _scores_in_view(fitter, view, base, drawn, shown, samples, hypotheses, empty)
 
-    seen_px: Floats = PX_OF_M2 * sum(fitter.each(seen_in, looked), none)
-    return seen_px
+    score_px: Floats = PX_OF_M2 * sum(fitter.each(score_in, looked), none)
+    return score_px
 
 
 def added_in_views(
@@ -93,16 +93,16 @@ def added_in_views(
     scores: Floats,
     covered: float = 1.0,
 ) -> Floats:
-    """scores (N,) and what each camera says of a limb in front of the rest of the body [m^2]; covered: see `score_arms`."""
+    """scores (N,) plus each camera's score of a limb in front of the rest of the body [m^2]; covered: see `score_arms`."""
 
-    def seen_in(view: View) -> Floats:
+    def score_in(view: View) -> Floats:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, limb.others)
         return _scores_in_view(
             fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, covered
         )
 
-    # added up in the order of the views, whichever thread was first
-    return sum(fitter.each(seen_in, views), scores)
+    # sum in the order of the views, not of the threads
+    return sum(fitter.each(score_in, views), scores)
 
 
 def _scores_in_view(
@@ -110,19 +110,19 @@ def _scores_in_view(
     view: View,
     base: PartialRender,
     drawn: NDArray[np.uint8],
-    seen: NDArray[np.uint8],
+    shown: NDArray[np.uint8],
     samples: ArmSamples,
     hypotheses: Floats,
     empty: float,
     covered: float = 1.0,
 ) -> Floats:
-    """What one camera says (N,) [m^2], of ids (h,w) `drawn` without the arm, and `seen`; covered: see `score_arms`."""
+    """One camera's scores (N,) [m^2], of ids (h,w) `drawn` without the arm and `shown` in the picture; see `score_arms`."""
     drawing, scores = fitter.drawings[view.index], np.zeros(len(hypotheses))
     image_scale = drawing.image_scale
     score_arms(
         hypotheses, samples, fitter.model.parents, base.posed, drawing.projection,
         np.array([float(view.roi[0] * image_scale), float(view.roi[1] * image_scale)]), 1.0 / image_scale,
-        base.zbuffer, drawn, seen, view.pixel_weight, empty, covered,
+        base.zbuffer, drawn, shown, view.pixel_weight, empty, covered,
         _NO_DEPTHS if view.depth_m is None else view.depth_m, fitter.params.depth_off_m, scores,
     )  # fmt: skip
     return scores

@@ -1,1 +1,1 @@
-"""What holds a pose beside the evidence: where people usually are, how they move, how far joints go."""
+"""Priors of the fit: usual poses, motion, joint limits."""

@@ -1,4 +1,4 @@
-"""Where arms are when nobody looks, trained by `lab.training.train_arm_motion` on clips of real motion."""
+"""Prior pose of unobserved arms, trained by `lab.training.train_arm_motion` on clips of real motion."""
 
 from dataclasses import dataclass
 
@@ -16,19 +16,19 @@ _MIRROR = np.array([1.0, -1.0, -1.0])  # of a rotation vector, at x = 0
 @dataclass(frozen=True, slots=True, eq=False)
 class ArmMotion:
     """Of the left arm's collar, upper arm and forearm: mean_xyzw (3,4) local rotations, covariance_rad2 (9,9) of the pose
-    step from there; glide_s: after how long a velocity is down to 1/e."""
+    step from there; decay_s: time constant of the velocity's decay."""
 
     mean_xyzw: Floats
     covariance_rad2: Floats
-    glide_s: float
+    decay_s: float
 
-    def mirrored(self) -> "ArmMotion":
+    def mirror_arm(self) -> "ArmMotion":
         """The right arm's."""
         signs = np.tile(_MIRROR, 3)
         return ArmMotion(
             self.mean_xyzw * np.append(_MIRROR, 1.0),
             self.covariance_rad2 * np.outer(signs, signs),
-            self.glide_s,
+            self.decay_s,
         )
 
 
@@ -37,12 +37,12 @@ def load_arm_motion() -> ArmMotion:
     path = asset_path(ASSET)
     data = read_json(path)
     mean, covariance = (np.asarray(data.get(k), float) for k in ("mean_xyzw", "covariance_rad2"))
-    glide_s = data.get("glide_s")
+    decay_s = data.get("glide_s")
     if (
         mean.shape != (3, 4)
         or covariance.shape != (9, 9)
         or np.linalg.eigvalsh(covariance).min() <= 0.0
-        or not isinstance(glide_s, float)
+        or not isinstance(decay_s, float)
     ):
-        raise ConfigError("is not what is known of arms", str(path), "install mocapd again")
-    return ArmMotion(mean, covariance, glide_s)
+        raise ConfigError("is no prior of arm motion", str(path), "install mocapd again")
+    return ArmMotion(mean, covariance, decay_s)

@@ -1,8 +1,8 @@
-"""What is known of the pose before a frame is looked at: what the last one left open, and how much it may have moved.
+"""Motion prior of the pose: the last fit's covariance plus process noise.
 
 The prediction step of a Kalman filter over the pose parameters. A direction that the pictures determine well is held to its
 prediction as tightly as the wearer moves calmly; one that they hardly determine (depth before one camera) stays open, and so
-is steadied over many frames rather than locked.
+is averaged over many frames rather than locked.
 """
 
 from collections.abc import Sequence

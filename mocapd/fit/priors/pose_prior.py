@@ -1,8 +1,8 @@
-"""What holds a pose beside the pictures: joint limits, where arms usually are, upright hips.
+"""Priors on a pose: joint limits, usual poses of limbs, upright hips.
 
-Cameras whose views cross see every direction, and all that they leave open is a hidden arm: a loose pull to everyday
-motion will do, and a firmer one would bend arms that are seen. One camera, or two side by side, hardly see along
-their views: there a body's shape and cloth mislead more than people's habits do, so these count in full.
+Cameras with crossing views observe every direction, and leave only hidden arms open: a loose pull to everyday
+motion will do, and a firmer one would bend visible arms. With a small baseline the depth is hardly observed:
+there the body's shape and cloth mislead more than the prior does, so it has its full weight.
 """
 
 from collections.abc import Mapping
@@ -25,7 +25,7 @@ _SPINE_SD_RAD = (0.5, 0.5, 0.4)
 _COLLAR_SD_RAD = (0.2, 0.2, 0.2)
 _FREE = 1e3
 # Of a whole body's left side and trunk: mean and spread over 34 clips of everyday motion and sport (CMU, HDM05), each clip
-# counted alike, standing people a little more. A knee hardly twists; what it seems to is the thigh's.
+# of the same weight, upright people a little more. A knee hardly twists; what it seems to is the thigh's.
 _LEG_REST_RAD = {
     "UpperLeg": (-0.25, 0.0, 0.0),
     "LowerLeg": (0.5, 0.0, 0.0),
@@ -41,13 +41,13 @@ _NECK_REST_RAD, _NECK_SD_RAD = (0.25, 0.0, 0.0), (0.35, 0.45, 0.2)
 
 
 def arm_motions() -> Mapping[str, ArmMotion]:
-    """Where the arm of each side is when nobody looks."""
+    """Prior pose of the arm of each side."""
     left = load_arm_motion()
-    return {"left": left, "right": left.mirrored()}
+    return {"left": left, "right": left.mirror_arm()}
 
 
-def wide_prior(model: BodyModel, p: FitParams) -> PosePriors:
-    """For cameras whose views cross."""
+def wide_baseline_prior(model: BodyModel, p: FitParams) -> PosePriors:
+    """For cameras with crossing views."""
     rest = np.tile(IDENTITY_XYZW, (N_JOINTS, 1))
     for side, mirror in (("left", 1.0), ("right", -1.0)):
         for bone, (x, y, z) in (
@@ -68,9 +68,9 @@ def wide_prior(model: BodyModel, p: FitParams) -> PosePriors:
     return _priors(model, p, rest, information, 0.0)
 
 
-def narrow_prior(model: BodyModel, p: FitParams) -> PosePriors:
-    """For cameras that hardly see along their views."""
-    wide = wide_prior(model, p)
+def small_baseline_prior(model: BodyModel, p: FitParams) -> PosePriors:
+    """For cameras on a small baseline: the depth is hardly observed."""
+    wide = wide_baseline_prior(model, p)
     rest, information = wide.rest_local.copy(), wide.rest_information.copy()
     for side, arm in arm_motions().items():
         rest[[INDEX[side + bone] for bone in _BONES]] = arm.mean_xyzw

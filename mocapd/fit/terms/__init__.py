@@ -1,1 +1,1 @@
-"""Terms of the fit beside the id maps, one a file."""
+"""Terms of the fit, one a file."""

@@ -1,7 +1,7 @@
-"""Arms do not go through the trunk: what else would be the cheapest way to hide one that is not seen.
+"""Arms do not go through the trunk: inside it an unseen arm would cost least.
 
-The trunk is an elliptic cylinder whose half axes follow the wearer's surface by height, as the anisotropically scaled
-cylinder of Hecht et al. 2009 (section 3.3); elbow, forearm, wrist and hand are kept outside of it.
+The trunk is an elliptic cylinder with half axes that follow the wearer's surface by height, as the anisotropically scaled
+cylinder of Hecht et al. 2009 (section 3.3); elbow, forearm, wrist and hand stay outside of it.
 """
 
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ class TorsoHull:
         slices = [mine[place == k] for k in range(SLICES)]
         return cls(np.concatenate(slices), np.cumsum([0, *map(len, slices[:-1])]))
 
-    def sized(self, body: Shaped) -> TorsoSlices:
+    def slices_of(self, body: Shaped) -> TorsoSlices:
         """Half axes and middles of the slices of a wearer, about the line from the hips to the upper chest [m]."""
         rest, first = body.rest, self.first
         hips, top = rest[INDEX["hips"]], rest[INDEX["upperChest"]]
@@ -82,7 +82,7 @@ class CollisionTerm:
     def slices(self, body: Shaped) -> TorsoSlices:
         """The trunk of a body."""
         if self._body is not body:
-            self._body, self._slices = body, self._hull.sized(body)
+            self._body, self._slices = body, self._hull.slices_of(body)
             self._plain_slices = plain(self._slices)
         return self._slices
 

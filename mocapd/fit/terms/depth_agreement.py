@@ -1,14 +1,14 @@
-"""What it costs that the body as drawn is nearer or farther than what two close views saw there. It compares drawn bodies and
-pulls at none."""
+"""Cost of the drawn body's distance from the stereo depth. It compares poses and adds no rows to the normal
+equations."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from mocapd.body.areas import N_AREAS
-from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.seen_depth import GRID_PX
+from mocapd.fit.idmap_renderer import IdMapRenderer
+from mocapd.fit.stereo_depth import GRID_PX
 from mocapd.fit.terms.depth_agreement_kernels import compare_depths
 from mocapd.fit.view import View
 from mocapd.types import Floats
@@ -17,8 +17,8 @@ from mocapd.types import Floats
 def compared_depths(
     drawings: Sequence[IdMapRenderer], views: Sequence[View], p: FitParams
 ) -> tuple[float, Floats, float]:
-    """The cost of what was drawn last nearer or farther than it is seen; by area whether it is there (A,); and the
-    pixels in which something is seen well before what was drawn."""
+    """The cost of last drawn pixels off the stereo depth; the agreement by area (A,); and the number of pixels with an
+    object well in front of the drawn body."""
     if all(view.depth_m is None for view in views):
         return 0.0, np.ones(N_AREAS), 0.0
     cost = nearer_px = 0.0

@@ -1,7 +1,7 @@
-"""Points of the body's surface at distances that two close views measured.
+"""Point-to-ray distance term: points of the body's surface at stereo distances.
 
 Silhouettes of cameras side by side say little along their views; the cloth's own texture does (Horaud et al. 2009 align
-the surface with stereo points; here each point knows the triangle that it was looked for at).
+the surface with stereo points; here each point has the triangle it was predicted on).
 """
 
 from dataclasses import dataclass
@@ -12,9 +12,7 @@ from mocapd.body.shaping import Shaped
 from mocapd.fit.terms.point_rows_kernels import pull_along_rays
 from mocapd.types import Floats, Ints
 
-_ROBUST_M = (
-    0.12  # a residual of this has a quarter of its weight: what was matched is another thing
-)
+_ROBUST_M = 0.12  # a residual of this has a quarter of its weight: a mismatch
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,9 +38,9 @@ class DistanceTerm:
 
     def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
         """See `Term`."""
-        m, seen = self._model, self._measured
+        m, points = self._model, self._measured
         cost: float = pull_along_rays(
-            seen.triangle, seen.origin_m, seen.rays, seen.distance_m, self._information, _ROBUST_M,
+            points.triangle, points.origin_m, points.rays, points.distance_m, self._information, _ROBUST_M,
             body.centres, m.triangle_bones, m.triangle_weights, body.rest, m.parents,
             m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, H, b,
         )  # fmt: skip

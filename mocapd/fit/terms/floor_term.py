@@ -1,4 +1,4 @@
-"""Feet are not under the floor, and somebody who does not jump stands on one or both.
+"""Feet are not under the floor, and without a jump one or both touch it.
 
 The paper's future work (Hecht et al. 2009, section V.B): external constraints. Where cameras look from one side it fixes how
 far away the feet are, which nothing else does.
@@ -22,9 +22,9 @@ class FloorParams:
     """How firm the floor is."""
 
     under_sd_m: float = 0.01  # of an ankle or a toe that is too low
-    standing_sd_m: float = 0.01  # of one that stands: pixels by the hundred pull at it
+    on_floor_sd_m: float = 0.01  # of one on the floor: pixels by the hundred pull at it
     together_m: float = 0.08  # what is higher than the lowest by less stands, too
-    jump_m: float = 0.25  # at this height standing has lost half of its weight
+    jump_m: float = 0.25  # at this height the pull to the floor has lost half of its weight
 
 
 class FloorTerm:
@@ -41,7 +41,7 @@ class FloorTerm:
         """See `Term`."""
         m, p = self._model, self._params
         cost: float = stand_on_floor(
-            self._feet, body.rest[self._feet, 1], (1.0 / p.under_sd_m**2, 1.0 / p.standing_sd_m**2),
+            self._feet, body.rest[self._feet, 1], (1.0 / p.under_sd_m**2, 1.0 / p.on_floor_sd_m**2),
             p.together_m, p.jump_m, body.rest, m.parents, m.joint_of_group, m.group_of_joint,
             m.share_of_joint, posed.R, posed.joints, H, b,
         )  # fmt: skip

@@ -9,7 +9,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import joint_shape_derivatives
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import N_JOINTS
-from mocapd.fit.body_drawing import IdMapRenderer
+from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.fit.terms.id_map_kernels import AlignmentSums, ComparedPictures, Search, accumulate
 from mocapd.types import Floats
@@ -90,8 +90,8 @@ class CameraSums:
         n_unknown: int,
         weight: float,
     ) -> None:
-        """Add up anew, from the body that `drawing` posed last; the pictures are on the search's grid. n_unknown: those of
-        the pose, or of pose and shape; weight: of a pixel's row."""
+        """Recompute the sums from the body that `drawing` posed last; pictures: on the search's grid; n_unknown: of the pose,
+        or of pose and shape; weight: of a pixel's row."""
         m = drawing.model
         self.cost = sum_rows(
             pictures, search, drawing.xy if search.grid_px == 1.0 else drawing.coarse_xy, m.surface, drawing.labels,

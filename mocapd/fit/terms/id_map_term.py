@@ -10,9 +10,9 @@ from mocapd.body.areas import N_AREAS
 from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
 from mocapd.each import Each
-from mocapd.fit.body_drawing import IdMapRenderer
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.idmap_renderer import IdMapRenderer
+from mocapd.fit.motion_state import MotionState, predict_pose
 from mocapd.fit.terms.id_map_kernels import ComparedPictures, Search
 from mocapd.fit.terms.id_map_sums import CameraSums, search_within
 from mocapd.fit.terms.nearest_pixel_kernels import offsets_by_distance
@@ -24,7 +24,7 @@ _NO_PIXELS = np.zeros(N_AREAS)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Iteration:
-    """What is the same for all cameras in one of them; n_unknown: of pose, or of pose and shape."""
+    """Inputs of one iteration for all cameras; n_unknown: of pose, or of pose and shape."""
 
     state: MotionState
     body: Shaped
@@ -34,7 +34,7 @@ class _Iteration:
 
 
 class IdMapTerm:
-    """What the pictures of all cameras say of one body. Each camera's sums are those of the last `system`."""
+    """Id maps of all cameras against one body. Each camera's sums are those of the last `system`."""
 
     def __init__(
         self, drawings: Sequence[IdMapRenderer], model: BodyModel, params: FitParams, each: Each
@@ -43,7 +43,7 @@ class IdMapTerm:
         self._cameras = [CameraSums(model) for _ in drawings]
         self._offsets = offsets_by_distance(params.first_radius_px)
         self._offsets_r2 = (self._offsets**2).sum(axis=1)
-        self._search = cache(self._searched)
+        self._search = cache(self._make_search)
 
     def search(self, along: float, fine: bool, phase: int) -> Search:
         """Of an iteration so far along, 0 the first, 1 the last: half of all pixels, or, not `fine`, a quarter, every second
@@ -53,7 +53,7 @@ class IdMapTerm:
             p.first_radius_px + along * (p.last_radius_px - p.first_radius_px), fine, phase
         )
 
-    def _searched(self, radius_px: float, fine: bool, phase: int) -> Search:
+    def _make_search(self, radius_px: float, fine: bool, phase: int) -> Search:
         grid_px = 1.0 if fine else 2.0
         n = np.searchsorted(self._offsets_r2, (radius_px / grid_px) ** 2, side="right")
         return search_within(
@@ -70,7 +70,7 @@ class IdMapTerm:
         n_shape: int,
         redraw: bool,
     ) -> tuple[Floats, Floats]:
-        """H (P,P), b (P,) of all views, whose pictures are on the search's grid; n_shape: how many shape factors are unknowns
+        """H (P,P), b (P,) of all views, with pictures on the search's grid; n_shape: how many shape factors are unknowns
         after those of the pose, none or all. redraw: not, where the state was drawn last into every view."""
         P = self._model.n_pose + n_shape
         self._each(partial(self._gather, _Iteration(state, body, search, P, redraw)), views)
@@ -98,7 +98,7 @@ class IdMapTerm:
         """The rows of one camera, at its own instant."""
         m, coarse = self._model, one.search.grid_px > 1.0
         drawing = self._drawings[view.index]
-        root_m, local_xyzw = moved(m, one.state, view.dt_s)
+        root_m, local_xyzw = predict_pose(m, one.state, view.dt_s)
         if one.redraw:
             draw = drawing.draw_coarse if coarse else drawing.draw
             drawn = draw(root_m, local_xyzw, one.body, view.roi)

@@ -1,4 +1,4 @@
-"""Joints that a network saw in pictures: each near the ray to where it was seen, and as much farther away than the hips."""
+"""Keypoint term: each joint near the ray through its keypoint, at the network's depth relative to the hips."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,16 +20,16 @@ _TRUNK = [(INDEX["left" + j], INDEX["right" + j]) for j in ("UpperArm", "UpperLe
 
 @dataclass(frozen=True, slots=True)
 class JointTermParams:
-    """How much the joints count that a network saw. It errs alike in cameras beside each other, and from frame to frame."""
+    """Weights of the keypoints. Their errors are correlated between neighbouring cameras and in time."""
 
     weight: float = 4.0  # of a squared Mahalanobis distance [disagreeing pixels]
     robust: float = 3.0  # standard deviations at which a joint has a quarter of its weight
-    depth_weight: float = 0.5  # of its depth beside its place
+    depth_weight: float = 0.5  # of its depth relative to its place
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointRays:
-    """What one camera saw of joints (J,), at the frame set's own instant.
+    """One camera's keypoints of joints (J,), at the frame set's own instant.
 
     xy (J,2): undistorted normalised coordinates, with information (J,3) xx, xy, yy [1/m^2] across the ray; farther_m (J,):
     than the hips along the camera's axis, with depth_information (J,) [1/m^2].
@@ -44,53 +44,53 @@ class JointRays:
 
 
 class JointTerm:
-    """What the cameras of one frame set saw of one body's joints, a `Term`."""
+    """All cameras' keypoints of one body in one frame set, a `Term`."""
 
     is_measured = False
 
     def __init__(
-        self, model: BodyModel, seen: Sequence[JointRays], params: JointTermParams | None = None
+        self, model: BodyModel, rays: Sequence[JointRays], params: JointTermParams | None = None
     ) -> None:
-        self._model, self.seen = model, seen
+        self._model, self.rays = model, rays
         self._params = params if params is not None else JointTermParams()
 
     @property
     def trusting(self) -> "JointTerm":
-        """The same for a pose that is far away: no joint is taken for another thing."""
-        return JointTerm(self._model, self.seen, replace(self._params, robust=1e6))
+        """The same without outlier rejection, for a distant pose."""
+        return JointTerm(self._model, self.rays, replace(self._params, robust=1e6))
 
     def costs(self, joints_m: Floats) -> Floats:
-        """What each joint (J,) of a body at joints_m (J,3) costs."""
+        """Cost of each joint (J,) of a body at joints_m (J,3)."""
         p, out = self._params, np.zeros(len(joints_m))
-        for one in self.seen:
-            place2, depth2 = _mahalanobis2(one, joints_m)
+        for rays in self.rays:
+            place2, depth2 = _mahalanobis2(rays, joints_m)
             for m2, weight in ((place2, p.weight), (depth2, p.weight * p.depth_weight)):
-                out[one.joints] += weight * m2 / (1.0 + m2 / p.robust**2)
+                out[rays.joints] += weight * m2 / (1.0 + m2 / p.robust**2)
         return out
 
     def off_sds2(self, joints_m: Floats) -> list[Floats]:
-        """Of each camera, how far off the rays its joints (N,) are in a body at joints_m (J,3) [standard deviations^2]."""
-        return [_mahalanobis2(one, joints_m)[0] for one in self.seen]
+        """By camera, squared Mahalanobis distances of its joints (N,) from their rays, of a body at joints_m (J,3)."""
+        return [_mahalanobis2(rays, joints_m)[0] for rays in self.rays]
 
     def median_spreads_m(self, least_joints: int) -> list[float]:
-        """Of each camera, the median over its joints of the standard deviation of their places across the ray [m]; inf where
-        it saw fewer than least_joints."""
+        """Of each camera, the median over its joints of the standard deviation of their places across the ray [m]; inf with
+        fewer than least_joints keypoints."""
         out: list[float] = []
-        for one in self.seen:
-            xx, xy, yy = one.information.T
-            enough = len(one.joints) >= least_joints
+        for rays in self.rays:
+            xx, xy, yy = rays.information.T
+            enough = len(rays.joints) >= least_joints
             spreads_m = np.sqrt(0.5 * (xx + yy) / (xx * yy - xy * xy))
             out.append(float(np.median(spreads_m)) if enough else np.inf)
         return out
 
     def places_m(self, hips_m: Floats) -> Floats:
-        """Where each joint (J,3) of a body with its hips at hips_m (3,) was seen, on average of the cameras; NaN: nowhere."""
+        """Keypoint places (J,3) of a body with its hips at hips_m (3,), averaged over the cameras; NaN without one."""
         total, count = np.zeros((N_JOINTS, 3)), np.zeros(N_JOINTS)
-        for one in self.seen:
-            z = to_camera(one.camera, hips_m[None])[0, 2] + one.farther_m
-            rays = np.concatenate([one.xy, np.ones((len(z), 1))], axis=1)
-            total[one.joints] += from_camera(one.camera, rays * z[:, None])
-            count[one.joints] += 1.0
+        for rays in self.rays:
+            z = to_camera(rays.camera, hips_m[None])[0, 2] + rays.farther_m
+            directions = np.concatenate([rays.xy, np.ones((len(z), 1))], axis=1)
+            total[rays.joints] += from_camera(rays.camera, directions * z[:, None])
+            count[rays.joints] += 1.0
         out: Floats = (
             np.where(count > 0.0, 1.0, np.nan)[:, None] * total / np.maximum(count, 1.0)[:, None]
         )
@@ -102,7 +102,7 @@ class JointTerm:
         standard deviation (J,) of that [m]: inf where fewer than two cameras saw it."""
         A, b = np.tile(_NOWHERE, (N_JOINTS, 1, 1)), np.zeros((N_JOINTS, 3))
         cameras = np.zeros(N_JOINTS)
-        for one in self.seen:
+        for one in self.rays:
             R, t_m, (xx, xy, yy) = one.camera.R, one.camera.t_m, one.information.T
             rows = R[:2] - one.xy[:, :, None] * R[2]  # (N,2,3): across the ray, by the world's axes
             weighted = np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -2) @ rows
@@ -114,37 +114,37 @@ class JointTerm:
         return places_m, np.asarray(sd_m, dtype=np.float64)
 
     def turn_rad(self, joints_m: Floats) -> float:
-        """By how much a body with joints at joints_m (J,3) must turn about the vertical to face as it was seen; 0 where too
-        little of its trunk was."""
+        """Rotation about the vertical from a body at joints_m (J,3) to the keypoints' facing; 0 without keypoints of both
+        sides of the trunk."""
         there_m = self.places_m(joints_m[0])
-        seen, mine = np.zeros(3), np.zeros(3)
+        measured, mine = np.zeros(3), np.zeros(3)
         for left, right in _TRUNK:
             across = there_m[left] - there_m[right]
             if np.isfinite(across).all():
-                seen += across
+                measured += across
                 mine += joints_m[left] - joints_m[right]
-        turn = np.arctan2(mine[2], mine[0]) - np.arctan2(seen[2], seen[0])
-        return float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) if seen.any() else 0.0
+        turn = np.arctan2(mine[2], mine[0]) - np.arctan2(measured[2], measured[0])
+        return float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) if measured.any() else 0.0
 
     def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
         """See `Term`."""
         m, p = self._model, self._params
         cost = 0.0
-        for one in self.seen:
+        for rays in self.rays:
             cost += pull_at_joints(
-                one.joints, one.xy, one.information, one.farther_m, one.depth_information,
-                (p.weight, p.robust, p.depth_weight), one.camera.R, one.camera.t_m, body.rest, m.parents,
+                rays.joints, rays.xy, rays.information, rays.farther_m, rays.depth_information,
+                (p.weight, p.robust, p.depth_weight), rays.camera.R, rays.camera.t_m, body.rest, m.parents,
                 m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, H, b,
             )  # fmt: skip
         return cost
 
 
-def _mahalanobis2(seen: JointRays, joints_m: Floats) -> tuple[Floats, Floats]:
-    """Of each joint that was seen (N,), squared: of its place across the ray, and of its depth beside the hips'."""
-    there = to_camera(seen.camera, joints_m)
-    z = there[seen.joints, 2]
-    off = seen.xy * z[:, None] - there[seen.joints, :2]
-    xx, xy, yy = seen.information.T
+def _mahalanobis2(rays: JointRays, joints_m: Floats) -> tuple[Floats, Floats]:
+    """Of each keypoint (N,), squared: of its place across the ray, and of its depth relative to the hips."""
+    there = to_camera(rays.camera, joints_m)
+    z = there[rays.joints, 2]
+    off = rays.xy * z[:, None] - there[rays.joints, :2]
+    xx, xy, yy = rays.information.T
     place2 = xx * off[:, 0] ** 2 + 2.0 * xy * off[:, 0] * off[:, 1] + yy * off[:, 1] ** 2
-    depth2 = seen.depth_information * (seen.farther_m - (z - there[0, 2])) ** 2
+    depth2 = rays.depth_information * (rays.farther_m - (z - there[0, 2])) ** 2
     return place2, depth2

@@ -20,7 +20,7 @@ class PlantedParams:
     """How firmly a foot stands."""
 
     ankle_sd_m: float = 0.004  # pixels by the hundred pull at it
-    toes_sd_m: float = 0.02  # who begins to stand may have been seen to point elsewhere
+    toes_sd_m: float = 0.02  # early estimates of the foot's direction err
     robust_m: float = 0.03  # this far away from its place a joint is held by a quarter
 
 

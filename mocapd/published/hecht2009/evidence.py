@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from mocapd.clock import seconds
-from mocapd.fit.body_drawing import image_scales
+from mocapd.fit.idmap_renderer import image_scales
 from mocapd.geometry.camera_model import project
 from mocapd.published.hecht2009.cylinders.limb_score import LimbView
 from mocapd.published.hecht2009.cylinders.occlusion import allocate_occlusion, fill_occlusion
@@ -67,13 +67,13 @@ class CameraEvidence:
         self._now.fill(pixels)
         self._edges.fill(self._now.grey, self._last.grey if had else None, self._params.edges)
 
-    def stand_before(self, uncovered: bool) -> None:
+    def update_foreground(self, uncovered: bool) -> None:
         """Update the foreground; uncovered: also move uncovered background (ghosts) into the background model."""
         self.background.follow_light(self._now.colour, self._body)
-        self.before = self.background.before(self._now.colour)
+        self.before = self.background.foreground(self._now.colour)
         if uncovered:
             no_arms = np.zeros_like(self._body)
-            self.background.take_uncovered(self._now.colour, self.before, self._body, no_arms)
+            self.background.remove_ghosts(self._now.colour, self.before, self._body, no_arms)
 
     def mark_body(self, ends_m: Floats | None, radii_m: Floats) -> None:
         """Mark the body: parts of ends (C,2,3) and radii (C,2) [m]. The background is not learned in their widened outlines,

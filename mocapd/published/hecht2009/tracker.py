@@ -128,7 +128,7 @@ class Hecht2009Tracker:
             known, self._near = self._taken_over(self._near, frames), None
         self._mark(None if known is None else known.state.points_m)
         for view in self._views.present:
-            view.stand_before(self._turn % self.params.uncovered_turns == 0)
+            view.update_foreground(self._turn % self.params.uncovered_turns == 0)
         self.probe("background")
         head = self._head.step([view.head_picture() for view in self._views.each], dt_s)
         head = self._or_standing(head, dt_s)

@@ -10,8 +10,8 @@ from mocapd.published.rao_hodges.params import Params
 from mocapd.tracking.pictures import CameraPicture, Pictures
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig
 from mocapd.vision.foreground_kernels import BACKGROUND, UNKNOWN
+from mocapd.vision.ghost_removal import brightness_edges
 from mocapd.vision.room_background import RoomBackground
-from mocapd.vision.uncovered import brightness_edges
 
 
 class CameraSilhouette:
@@ -37,10 +37,10 @@ class CameraSilhouette:
     def renew(self, uncovered: bool) -> None:
         """Compare the newest picture with the background; uncovered: also move uncovered background into the model."""
         self.background.follow_light(self.picture.bgr, self._body)
-        self._before = self.background.before(self.picture.bgr)
+        self._before = self.background.foreground(self.picture.bgr)
         if uncovered:
             no_arms = np.zeros_like(self._body)
-            self.background.take_uncovered(self.picture.bgr, self._before, self._body, no_arms)
+            self.background.remove_ghosts(self.picture.bgr, self._before, self._body, no_arms)
 
     def mask(self) -> Bytes:
         """(h,w): 255 on the foreground, shadows included, and where the background is unknown. A hole in one silhouette

@@ -94,12 +94,12 @@ def fit_colour_model(
     return ColourModel(
         names=names,
         mean=np.array([value.mean(axis=0) for value in values]),
-        covariance=np.array([_floored(np.cov(value.T)) for value in values]),
+        covariance=np.array([_floor_eigenvalues(np.cov(value.T)) for value in values]),
         version=version,
     )
 
 
-def _floored(covariance: Floats) -> Floats:
+def _floor_eigenvalues(covariance: Floats) -> Floats:
     eigenvalues, vectors = np.linalg.eigh(covariance)
     floored: Floats = (vectors * np.maximum(eigenvalues, MIN_STANDARD_DEVIATION**2)) @ vectors.T
     return floored

@@ -1,4 +1,4 @@
-"""The look-up table of one camera: a colour model seen through that camera's white balance."""
+"""The look-up table of one camera: a colour model under that camera's white balance."""
 
 from dataclasses import dataclass, field
 

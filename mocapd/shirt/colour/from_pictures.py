@@ -1,4 +1,4 @@
-"""What a tracker knows of the shirt's colours: a colour model and white balances, from painted pictures."""
+"""The colour model and white balances of the shirt, from painted pictures."""
 
 from collections.abc import Mapping
 

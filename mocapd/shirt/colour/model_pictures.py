@@ -10,23 +10,23 @@ from mocapd.errors import ConfigError, InputError
 from mocapd.shirt.colour.strokes import (
     read_labelled,
     stroked_pictures,
-    strokes_beside,
+    strokes_path,
 )
-from mocapd.shirt.colour.white_balance import balanced
+from mocapd.shirt.colour.white_balance import apply_white_balance
 from mocapd.shirt.standard_shirt import N_COLOURS, standard_shirt
 from mocapd.types import Floats, LabelledPicture
 
 
 def stroked_image(image: Path) -> Path:
-    """The same image. Raises InputError when it is missing, or the strokes beside it are."""
-    for path in (image, strokes_beside(image)):
+    """The same image. Raises InputError when it or its stroke file is missing."""
+    for path in (image, strokes_path(image)):
         if not is_file(path):
             raise InputError("no such file", str(path), "paint the colours of the shirt again")
     return image
 
 
 def stroked_folder(folder: Path) -> tuple[Path, ...]:
-    """Every image of a folder, its strokes beside it. Raises InputError when there is none."""
+    """Every image of a folder, with its stroke file. Raises InputError when there is none."""
     images = stroked_pictures(folder)
     if not images:
         raise InputError("holds no image", str(folder), "it should hold 0.png, 0_strokes.png, ...")
@@ -55,5 +55,6 @@ def personal_model(
     """The wearer's own shirt in the light of the model, from pictures in the place's and W (3,3),
     model_from_camera, by camera: a dye that differs stays as a difference, the light does not."""
     return tuple(
-        LabelledPicture(balanced(one.pixels, W[name]), one.labels) for name, one in pictures.items()
+        LabelledPicture(apply_white_balance(one.pixels, W[name]), one.labels)
+        for name, one in pictures.items()
     )

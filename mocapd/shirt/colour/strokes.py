@@ -26,11 +26,11 @@ _PIXEL_NOISE_VARIANCE = 0.015**2
 
 
 def stroked_pictures(folder: Path) -> list[Path]:
-    """The pictures of a folder in which strokes lie beside them, by name: every PNG but NAME_strokes.png,
-    and NAME_labels.png, which is ground truth and none of a tracker's business. Raises as `require_pictures`."""
+    """The pictures of a folder with stroke files, by name: every PNG but NAME_strokes.png, and NAME_labels.png,
+    which is ground truth. Raises as `require_pictures`."""
     require_pictures(folder)
-    beside = (_STROKES, "_labels")
-    return [path for path in shown_in(folder) if _is_png(path) and not path.stem.endswith(beside)]
+    suffixes = (_STROKES, "_labels")
+    return [path for path in shown_in(folder) if _is_png(path) and not path.stem.endswith(suffixes)]
 
 
 def require_pictures(folder: Path) -> None:
@@ -43,7 +43,7 @@ def require_pictures(folder: Path) -> None:
             raise InputError(
                 "the picture of these strokes is missing",
                 str(strokes),
-                f"put {picture.name} beside them, or take them out",
+                f"put {picture.name} into the same folder, or take them out",
             )
 
 
@@ -51,8 +51,8 @@ def _is_png(path: Path) -> bool:
     return path.suffix == ".png"
 
 
-def strokes_beside(picture: Path) -> Path:
-    """Where the strokes on a picture lie."""
+def strokes_path(picture: Path) -> Path:
+    """Path of the strokes of a picture."""
     return picture.with_name(f"{picture.stem}{_STROKES}.png")
 
 
@@ -64,7 +64,7 @@ def read_image(path: Path) -> Bytes:
 def read_strokes(path: Path, size_px: tuple[int, int] | None = None) -> Bytes:
     """A stroke image file as labels (h,w) uint8; `size_px` (width, height) is what it must have.
 
-    Gray files, and colour files whose channels agree, hold the ids themselves. Raises InputError.
+    Gray files, and colour files with equal channels, hold the ids themselves. Raises InputError.
     """
     image = _read(path, cv2.IMREAD_UNCHANGED)
     if image.ndim == 3:
@@ -83,10 +83,10 @@ def read_strokes(path: Path, size_px: tuple[int, int] | None = None) -> Bytes:
 
 
 def read_labelled(image: Path, strokes: Path | None = None) -> LabelledPicture:
-    """An image and the strokes beside it, or in the file that is named. Raises InputError."""
+    """An image and its strokes, from NAME_strokes.png or the given file. Raises InputError."""
     pixels = read_image(image)
     size_px = pixels.shape[1], pixels.shape[0]
-    return LabelledPicture(pixels, read_strokes(strokes or strokes_beside(image), size_px))
+    return LabelledPicture(pixels, read_strokes(strokes or strokes_path(image), size_px))
 
 
 def stroke_colours(image: Bytes, strokes: Bytes) -> list[Floats]:
@@ -131,8 +131,8 @@ def _trim(values: Floats) -> Floats:
         covariance = np.cov(inner.T) * _CORE_TO_FULL_VARIANCE + np.eye(3) * _PIXEL_NOISE_VARIANCE
         centred = values - inner.mean(axis=0)
         distance2 = (centred * np.linalg.solve(covariance, centred.T).T).sum(axis=1)
-    kept: Floats = values[distance2 < _CHI2_3_AT_0_999]
-    return kept
+    inliers: Floats = values[distance2 < _CHI2_3_AT_0_999]
+    return inliers
 
 
 def _read(path: Path, flags: int) -> Bytes:

@@ -55,7 +55,7 @@ def shade_precision(model: ColourModel) -> Floats:
     return np.asarray(np.linalg.inv(tolerant) * _MEAN_NOISE**2, dtype=np.float64)
 
 
-def balanced(pixels: Bytes, W: Floats) -> Bytes:
+def apply_white_balance(pixels: Bytes, W: Floats) -> Bytes:
     """A picture (h,w,3) BGR of the camera in the light of the model."""
     rgb = pixels[..., ::-1].astype(float) @ W.T
     return np.ascontiguousarray(np.clip(np.rint(rgb), 0.0, 255.0)[..., ::-1]).astype(np.uint8)
@@ -77,7 +77,7 @@ def remember_illumination(
     When full, the oldest after the first leaves: the first is the user's own scribble, and the
     cost of trying them all must not grow with running time.
     """
-    if any(frobenius_distance(W, known) <= min_distance for known in references):
+    if any(frobenius_distance(W, other) <= min_distance for other in references):
         return references
     if len(references) >= capacity:
         references = references[:1] + references[2:]

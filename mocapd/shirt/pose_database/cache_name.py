@@ -1,3 +1,3 @@
-"""Where the pose database is kept; told without importing what makes it."""
+"""File name of the pose database; a module of its own, so that it imports nothing."""
 
 CACHE_NAME = "pose_database.bin"  # in the cache folder

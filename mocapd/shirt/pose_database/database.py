@@ -62,10 +62,10 @@ class PoseDatabase:
     """N poses and the index over their id maps.
 
     local_xyzw (N,J,4): rotations relative to the parent bone, the root's being identity.
-    camera_from_root_xyzw (N,4): the root's rotation in a camera whose optical axis goes through the
+    camera_from_root_xyzw (N,4): the root's rotation in a camera with its optical axis through the
     person; world_from_root = inverse(camera_from_world) * camera_from_view * this, with
     `camera_from_view` for the direction of the crop's centre.
-    root_m (N,3), side_rad (N,): where the root is, and the crop's side over the focal length, seen from
+    root_m (N,3), side_rad (N,): where the root is, and the crop's side over the focal length, at
     `distance_m`; see `root_in_view`.
     """
 
@@ -98,13 +98,13 @@ class PoseDatabase:
     def blend(self, indices: Ints, distances: NDArray[np.float64]) -> tuple[Floats, Floats]:
         """Local rotations (J,4) and camera_from_root (4,): the weighted blend of some poses.
 
-        Gaussian weights whose width is the mean distance, as in [Wang & Popovic 2009, section 4.3];
+        Gaussian weights with the mean distance as width, as in [Wang & Popovic 2009, section 4.3];
         quaternions are added in the hemisphere of the nearest one.
         """
         weights = blend_weights(distances)
         local = self.local_xyzw[indices].astype(float)
         root = self.camera_from_root_xyzw[indices].astype(float)
-        return _weighted(local, weights), _weighted(root, weights)
+        return _blend_rotations(local, weights), _blend_rotations(root, weights)
 
     def root_in_view(
         self, indices: Ints, distances: NDArray[np.float64], side_rad: float
@@ -136,7 +136,7 @@ def camera_from_view(camera: Camera, centre_px: Floats) -> Floats:
     return rotations.canonical(np.array([-ray[1], ray[0], 0.0, 1.0 + ray[2]]))
 
 
-def _weighted(q_xyzw: Floats, weights: NDArray[np.float64]) -> Floats:
+def _blend_rotations(q_xyzw: Floats, weights: NDArray[np.float64]) -> Floats:
     sign = np.where((q_xyzw * q_xyzw[:1]).sum(axis=-1) < 0.0, -1.0, 1.0)
     return rotations.canonical(np.einsum("k,k...,k...i->...i", weights, sign, q_xyzw))
 

@@ -2,8 +2,8 @@
 
 Layout: MAGIC, a checksum of all that follows (4 bytes), the length of the header (8 bytes, both
 little-endian), a JSON header (version, content hash, and per array name, type, shape and offset), then
-the arrays, each from a multiple of 64 bytes on. Written beside its place, flushed to the disk and
-renamed, so that it is whole or absent.
+the arrays, each from a multiple of 64 bytes on. The write is atomic: a temporary file in the
+same folder, fsync, rename.
 """
 
 import json
@@ -46,7 +46,7 @@ class _UnusableError(Exception):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoadedDatabase:
-    """The database, and how it came: `built` anew because of `reason` ("" when read from the file).
+    """The database, and its origin: `built` because of `reason` ("" when read from the file).
 
     `warning` is a line for the user, or "": the cache could not be written, so the next start builds
     again.
@@ -80,7 +80,9 @@ def load_or_build(
             _check_writable(cache_dir)
     with one_at_a_time(cache_dir, LOCK_NAME):
         try:
-            return LoadedDatabase(_read(path, wanted), built=False)  # by whom we waited for
+            return LoadedDatabase(
+                _read(path, wanted), built=False
+            )  # by the process that held the lock
         except _UnusableError as error:
             reason = str(error)
         database = build_database(params, progress, map_chunks)
@@ -137,10 +139,10 @@ def _check_writable(folder: Path) -> None:
 
 def _cannot_create(folder: Path, error: OSError) -> CannotCreateError:
     return CannotCreateError(
-        f"the pose database cannot be kept there ({error.strerror or error})",
+        f"the pose database cannot be stored there ({error.strerror or error})",
         str(folder),
         "give the service a cache folder it may write to, with 150 MB free; without it every start"
-        " builds the database anew",
+        " builds the database again",
     )
 
 
@@ -165,11 +167,11 @@ def _read(path: Path, wanted: str) -> PoseDatabase:
 
 
 def _header(file: IO[bytes], path: Path, wanted: str) -> tuple[int, list[dict[str, Any]]]:
-    """Where the arrays begin, and what they are; every byte of the file has been looked at."""
+    """Offset of the arrays, and their entries; verifies the checksum of the whole file."""
     magic = file.read(len(_MAGIC))
     if magic != _MAGIC:
         raise _UnusableError(f"{path} is no pose database of this version")
-    told = file.read(_CHECKSUM_BYTES)
+    expected = file.read(_CHECKSUM_BYTES)
     length = int.from_bytes(file.read(8), "little")
     if length > _BLOCK:
         raise _UnusableError(f"{path} is damaged (its header)")
@@ -179,7 +181,7 @@ def _header(file: IO[bytes], path: Path, wanted: str) -> tuple[int, list[dict[st
         raise _UnusableError(f"{path} is of another version")
     if os.fstat(file.fileno()).st_size != base + header["size"]:
         raise _UnusableError(f"{path} is cut short")
-    if _checksum(file) != told:
+    if _checksum(file) != expected:
         raise _UnusableError(f"{path} is damaged (its checksum)")
     entries: list[dict[str, Any]] = header["arrays"]
     return base, entries
@@ -214,7 +216,7 @@ def _arrays(database: PoseDatabase) -> dict[str, NDArray[Any]]:
 def _database(arrays: dict[str, NDArray[Any]]) -> PoseDatabase:
     # plain views: numba would compile everything a second time for the memmap subclass
     plain = {name: np.asarray(array).view(np.ndarray) for name, array in arrays.items()}
-    # what every query reads is kept in memory proper
+    # every query reads these: copies in memory
     small = {name: plain[name].copy() for name in ("mean", "basis", "centres", "start")}
     return PoseDatabase(
         local_xyzw=plain["local_xyzw"],

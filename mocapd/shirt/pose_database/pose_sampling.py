@@ -29,7 +29,7 @@ _MIRROR = np.array([1.0, -1.0, -1.0, 1.0])
 class SamplingParams:
     """Spread of the poses. Part of the database's content hash: changing a value rebuilds it."""
 
-    front_share: float = 0.6  # of the poses whose person turns at most front_yaw_deg away
+    front_share: float = 0.6  # of the poses with a yaw of at most front_yaw_deg
     front_yaw_deg: float = 75.0
     pitch_deg: tuple[float, float] = (-15.0, 40.0)  # camera looking up .. down at the person
     roll_deg: float = 12.0  # of the camera
@@ -45,7 +45,7 @@ class SamplingParams:
 @dataclass(frozen=True, slots=True, eq=False)
 class PoseSet:
     """N poses: local_xyzw (N,J,4), rotations relative to the parent bone, the root's being identity;
-    camera_from_root_xyzw (N,4), the root's rotation seen from a camera that looks straight at the person."""
+    camera_from_root_xyzw (N,4), the root's rotation in a camera that looks straight at the person."""
 
     local_xyzw: Singles
     camera_from_root_xyzw: Singles
@@ -100,7 +100,7 @@ def _about(axis: int, angle_rad: Floats) -> Floats:
     return rotations.exp(vector)
 
 
-def _centred(u: Floats, low: float, high: float) -> Floats:
+def _map_to_range(u: Floats, low: float, high: float) -> Floats:
     """0..1 to low..high with the middle of the cube at 0 and twice as dense there."""
     s = 2.0 * u - 1.0
     s = 0.5 * (s + s * np.abs(s))
@@ -123,9 +123,11 @@ def _orientation(u: Floats, params: SamplingParams) -> Floats:
     q = rotations.multiply(q, CAMERA_FROM_FACING_XYZW)
     q = rotations.multiply(q, _about(1, yaw))
     low, high = np.radians(params.lean_deg)
-    q = rotations.multiply(q, _about(0, _centred(u[:, 3], low, high)))
+    q = rotations.multiply(q, _about(0, _map_to_range(u[:, 3], low, high)))
     side = np.radians(params.lean_side_deg)
-    return rotations.canonical(rotations.multiply(q, _about(2, _centred(u[:, 4], -side, side))))
+    return rotations.canonical(
+        rotations.multiply(q, _about(2, _map_to_range(u[:, 4], -side, side)))
+    )
 
 
 def _torso(u: Floats) -> Floats:

@@ -1,7 +1,7 @@
-"""Bare skin as one camera sees it: learned where the face is, and told from the shirt's own colours.
+"""Skin colour model of one camera: learned at the face, to separate skin from the shirt's colours.
 
-In some light skin is the shirt's pink or orange, and face and hands are beside the sleeves: only what this wearer's
-skin looks like now tells them apart. Trousers, tried likewise, helped in some sessions and harmed in others.
+In some light skin has the shirt's pink or orange, and face and hands touch the sleeves: only a model of this wearer's
+skin in the present light separates them. Trousers, tried likewise, helped in some sessions and harmed in others.
 """
 
 import cv2
@@ -21,7 +21,7 @@ _FACING = -0.1  # cosine; a face that is turned farther away shows hair
 _RADIUS = 0.025  # of the stature
 _LEAST_PX = 6
 _LEAST_SHARE = 0.4  # of the disc that can be skin
-_SEEN_PX = 30.0  # before it is believed
+_LEAST_SUM_PX = 30.0  # of a valid model
 _RED = (0.36, 0.62)  # share of red, and of green, of skin in white-balanced light
 _GREEN = (0.22, 0.36)
 _DARK = 0.08  # brightness below which shares mean nothing, 0..1
@@ -77,26 +77,26 @@ def _can_be_skin(balanced: Floats) -> NDArray[np.bool_]:
 
 
 def hand_sized(bare: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Of what may be skin (h,w): what hangs together and is neither noise nor, as a wall is, larger than a hand."""
+    """Connected components of possible skin (h,w) of the size of a hand: no noise, no walls."""
     _, labels, stats, _ = cv2.connectedComponentsWithStats(bare.astype(np.uint8), connectivity=4)
     area = stats[:, cv2.CC_STAT_AREA]
-    kept = (area >= _HAND_PX[0]) & (area <= _HAND_PX[1])
-    kept[0] = False
-    out: NDArray[np.bool_] = kept[labels]
+    is_hand = (area >= _HAND_PX[0]) & (area <= _HAND_PX[1])
+    is_hand[0] = False
+    out: NDArray[np.bool_] = is_hand[labels]
     return out
 
 
-def learned(sums: Floats, seen: Floats, dt_s: float, memory_s: float) -> Floats:
-    """sums (4,) with what was seen; nothing seen leaves them."""
-    if seen[0] == 0.0:
+def add_statistics(sums: Floats, new: Floats, dt_s: float, memory_s: float) -> Floats:
+    """Decayed sums (4,) plus new statistics (4,); unchanged without pixels."""
+    if new[0] == 0.0:
         return sums
-    keep = float(np.exp(-dt_s / memory_s)) if sums[0] >= _SEEN_PX else 1.0
-    return keep * sums + seen
+    keep = float(np.exp(-dt_s / memory_s)) if sums[0] >= _LEAST_SUM_PX else 1.0
+    return keep * sums + new
 
 
 def whitening(sums: Floats, cloth_sd: float, noise_sd: float, shading_sd: float) -> Singles:
-    """affine (3,4) for `classify`, of skin; far from every pixel while it is not known."""
-    if sums[0] < _SEEN_PX:
+    """affine (3,4) for `classify`, of skin; far from every pixel while the model is invalid."""
+    if sums[0] < _LEAST_SUM_PX:
         return NOWHERE
     mean, covariance = shirt_appearance.camera_gaussians(
         np.eye(3), np.zeros((1, 4)), 1.0, (sums[3:0:-1] / sums[0])[None], np.zeros((1, 3, 3)),

@@ -1,4 +1,4 @@
-"""One camera's segmentation: work pictures, colour ids in the present light, what is learned of light and background."""
+"""One camera's segmentation: work pictures, colour ids in the present light, adaptation to light and background."""
 
 from dataclasses import dataclass, field
 
@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import plain
-from mocapd.fit.body_drawing import IdMapRenderer, Roi, work_size
 from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.idmap_renderer import IdMapRenderer, Roi, work_size
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.colour_tables import ColourTables
 from mocapd.shirt.colour.lut_kernels import classify_by_table
@@ -37,9 +37,9 @@ from mocapd.vision.room_background import BackgroundParams, RoomBackground
 Ids = NDArray[np.uint8]
 _WHOLE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
 _ALL_CERTAIN = np.ones(10, np.int64)
-_GAINS = (1.0, 1.8, 0.55)  # brightness tried with each known light when nobody is known
+_GAINS = (1.0, 1.8, 0.55)  # brightness to try with each reference illumination without a pose
 _FARTHEST = 7  # cells from its predicted place at which a colour is looked for
-_OLD_LIGHT = np.float32(0.25)  # share of what was counted that is left in another light
+_OLD_LIGHT = np.float32(0.25)  # share of the counts that stays after a change of light
 _SKIN_EVERY = 3  # ticks
 _WHITE_BALANCE_EVERY = 4  # ticks; between them the learned means alone follow the light
 _FORGET_EVERY = 8  # ticks
@@ -48,7 +48,7 @@ _NEAR = cv2.getStructuringElement(cv2.MORPH_RECT, (25, 25))
 
 @dataclass(slots=True)
 class Memory:
-    """What was learned of one camera since the last reset."""
+    """Adaptive state of one camera since the last reset."""
 
     appearance: ShirtAppearance
     references: tuple[Floats, ...]  # reference illuminations, paper section 5.2
@@ -81,7 +81,7 @@ class CameraSegmenter:
     model: ColourModel
     W: Floats  # of the strokes
     params: SegmentationParams
-    shared: RoomBackground | None = None  # whose owner learns it; None: its own
+    shared: RoomBackground | None = None  # another owner updates it; None: its own
     background: RoomBackground = field(init=False)
     memory: Memory = field(init=False)
     picture: Bytes = field(init=False)
@@ -132,7 +132,7 @@ class CameraSegmenter:
         self.picture = picture
         self.memory.ticks += ticks
         if self.background.lights != self.memory.lights:
-            # colours that were counted in the old light say nothing
+            # colour counts of the old light are invalid
             self.memory.lights = self.background.lights
             self.memory.shirt_count *= _OLD_LIGHT
             self.memory.other_count *= _OLD_LIGHT
@@ -145,9 +145,9 @@ class CameraSegmenter:
         """ids and pixel_weight (h,w) over the region, given the predicted id map and what drew it
         (buffers of this segmenter).
 
-        uncertain: colours (0..9) whose place is uncertain. When the shirt is badly classified, or much
-        worse than usual, other lights are tried and the best is kept: the light that carries the
-        known colours to what is seen where they are expected, and each reference illumination.
+        uncertain: colours (0..9) of uncertain place. When the classification is poor, or much
+        worse than usual, the best of several lights is taken: the one that maps the reference
+        colours to the pixels at their expected places, and each reference illumination.
         """
         p, memory = self.params, self.memory
         rendered = int(np.count_nonzero(predicted))
@@ -157,7 +157,7 @@ class CameraSegmenter:
         distance = self._distances(
             predicted, drawing, int(min(p.threshold / (CELL * prior), _FARTHEST)), divisor
         )
-        ids, pixel_weight = self._classified(memory.appearance, roi, distance, prior)
+        ids, pixel_weight = self._classify_in_light(memory.appearance, roi, distance, prior)
         if rendered == 0:
             return ids, pixel_weight
         inside = agreement(predicted, ids)[1] / rendered
@@ -168,27 +168,27 @@ class CameraSegmenter:
             best = self._relit(predicted, ids, roi, distance, prior)
             if best is not memory.appearance:
                 memory.appearance = best
-            ids, pixel_weight = self._classified(best, roi, distance, prior)
+            ids, pixel_weight = self._classify_in_light(best, roi, distance, prior)
         return ids, pixel_weight
 
     def _relit(
         self, predicted: Ids, ids: Ids, roi: Roi, distance: Ids, prior: float
     ) -> ShirtAppearance:
         memory = self.memory
-        seen = np.zeros((10, 4))
-        colour_statistics(self.picture, roi[0], roi[1], predicted, ids, False, seen)
+        observed = np.zeros((10, 4))
+        colour_statistics(self.picture, roi[0], roi[1], predicted, ids, False, observed)
         best, most = memory.appearance, agreement(predicted, ids)[1]
-        lights = [looks.transported(memory.appearance, seen, self.model.mean)]
+        lights = [looks.adapt_to_light(memory.appearance, observed, self.model.mean)]
         if most < self.params.poor_classification * np.count_nonzero(predicted):
             lights += [looks.fresh(W) for W in memory.references]
         for light in lights:
-            tried, _ = self._classified(light, roi, distance, prior)
+            tried, _ = self._classify_in_light(light, roi, distance, prior)
             same = agreement(predicted, tried)[1]
             if same > 1.02 * most:
                 best, most = light, same
         return best
 
-    def _classified(
+    def _classify_in_light(
         self, appearance: ShirtAppearance, roi: Roi, distance: Ids, prior: float
     ) -> tuple[Ids, Ids]:
         p, memory = self.params, self.memory
@@ -236,8 +236,8 @@ class CameraSegmenter:
     ) -> None:
         """Follow the light from the id map of the final pose (paper section 5.2, step 5).
 
-        dt_s: since pictures before this one taught it, at 30 Hz a tick. sure: the pose agrees well enough to tell shirt from
-        other things. face: where it is, if it is seen.
+        dt_s: since the last update, at 30 Hz a tick. sure: the pose agrees well enough to separate the shirt from
+        other objects. face: its disc, if visible.
         """
         p, memory = self.params, self.memory
         sums = np.zeros((10, 4))
@@ -254,9 +254,9 @@ class CameraSegmenter:
                 memory.shirt_count, memory.other_count,
             )  # fmt: skip
         if sure and face is not None:
-            seen = bare_skin.statistics(self.picture, final, roi[:2], face, W)
-            memory.skin = bare_skin.learned(
-                memory.skin, seen, max(_SKIN_EVERY * TICK_S, dt_s), p.skin_memory_s
+            pixels = bare_skin.statistics(self.picture, final, roi[:2], face, W)
+            memory.skin = bare_skin.add_statistics(
+                memory.skin, pixels, max(_SKIN_EVERY * TICK_S, dt_s), p.skin_memory_s
             )
             memory.skin_affine = bare_skin.whitening(
                 memory.skin, p.cloth_sd, p.noise_sd, p.shading_sd
@@ -267,7 +267,7 @@ class CameraSegmenter:
             memory.other_count *= keep
 
     def bare(self, roi: Roi, ids: Ids) -> NDArray[np.bool_] | None:
-        """Where a bare hand may be (h,w), of a region that was classified as ids; None while skin is not known."""
+        """Where a bare hand may be (h,w), of a region that was classified as ids; None without a skin model."""
         p, memory = self.params, self.memory
         if memory.skin_affine is bare_skin.NOWHERE:
             return None
@@ -288,7 +288,7 @@ class CameraSegmenter:
         return now // every > (now - max(1, round(dt_s / TICK_S))) // every
 
     def mark_body(self, final: Ids | None, roi: Roi) -> None:
-        """Where the body is now, so that it is not learned as background; None: nobody is known."""
+        """Mask the body out of the background model; None: no pose."""
         self.memory.body[:] = 0
         if final is not None:
             x0, y0, x1, y1 = roi
@@ -296,7 +296,7 @@ class CameraSegmenter:
             self.memory.body[y0:y1, x0:x1] = cv2.dilate(solid, _NEAR)
 
     def learn_background(self, ticks: int) -> None:
-        """Follow the background beside the body, unless whoever owns it does; ticks: see `RoomBackground.learn`."""
+        """Update the background outside the body, unless it has another owner; ticks: see `RoomBackground.learn`."""
         if self._owns_background:
             self.background.follow_light(self.picture, self.memory.body)
             self.background.learn(self.picture, self.memory.body, ticks)
@@ -304,7 +304,7 @@ class CameraSegmenter:
     # --- without a pose ---
 
     def find(self, sizes: Ints) -> ShirtCandidate | None:
-        """Where the shirt's colours are together, under each known light; None when nowhere enough."""
+        """Best region of evenly mixed shirt colours, over all reference illuminations; None without one."""
         p, memory = self.params, self.memory
         model = self.model.tolerating(p.shading_sd, p.cloth_sd)
         w, h = self.size
@@ -333,7 +333,7 @@ class CameraSegmenter:
                 )
         return best
 
-    def relight(self, W: Floats) -> None:
+    def set_light(self, W: Floats) -> None:
         """Read the pictures in this light from now on."""
         self.memory.appearance = looks.fresh(W)
         self.memory.usual = 0.0

@@ -1,4 +1,4 @@
-"""The segmenters of all cameras: the predicted body classified in each, and what they learn from it."""
+"""The segmenters of all cameras: pose-assisted classification, and updates from the fitted pose."""
 
 from collections.abc import Mapping, Sequence
 
@@ -6,9 +6,9 @@ import numpy as np
 
 from mocapd.body.areas import ARM_AREAS
 from mocapd.each import in_turn
-from mocapd.fit.body_drawing import Roi
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
+from mocapd.fit.idmap_renderer import Roi
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
@@ -22,7 +22,7 @@ from mocapd.vision.room_background import RoomBackground
 
 
 class RigSegmenter:
-    """One `CameraSegmenter` for each camera of a fitter; `present` below is each seeing camera's own time after
+    """One `CameraSegmenter` for each camera of a fitter; `present` below is each present camera's own time after
     the frame set's [s], by its index."""
 
     def __init__(
@@ -111,12 +111,12 @@ class RigSegmenter:
         # in turn, as the steps before and after: two threads take longer (docs/decisions/joint-heatmaps.md)
         in_turn(learn, views)
 
-    def learn_background(self, present: dict[int, float], nobody: bool, ticks: int = 1) -> None:
-        """Follow the background, in all of the picture when nobody is known; ticks: see `RoomBackground.learn`."""
+    def learn_background(self, present: dict[int, float], no_pose: bool, ticks: int = 1) -> None:
+        """Follow the background, in the whole picture without a pose; ticks: see `RoomBackground.learn`."""
 
         def learn(i: int) -> None:
             segmenter = self.each[i]
-            if nobody:
+            if no_pose:
                 segmenter.mark_body(None, (0, 0, 0, 0))
             segmenter.learn_background(ticks)
 

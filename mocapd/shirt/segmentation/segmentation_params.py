@@ -1,4 +1,4 @@
-"""Numbers of the reading of pictures: colours, background, light; with units and reasons."""
+"""Parameters of the segmentation: colours, background, light; with units and reasons."""
 
 from dataclasses import dataclass
 
@@ -18,14 +18,14 @@ class SegmentationParams:
     cloth_sd: float = 0.04  # spread of the cloth's own colour, in white-balanced light [0..1]
     noise_sd: float = 0.015  # sensor noise and compression [0..1]
     shading_sd: float = 0.25  # spread of brightness over the cloth, as a share of the colour
-    background_penalty: float = 1.5  # added where static background is seen [standard deviations]
-    other_penalty: float = 1.5  # added where the colour is rather seen on other things
+    background_penalty: float = 1.5  # added to background pixels [standard deviations]
+    other_penalty: float = 1.5  # added to colours that are more frequent on other objects
     skin_penalty: float = 0.3  # by how much skin must be nearer than a colour of the shirt
     bare_threshold: float = 3.0  # from which on nothing is skin [standard deviations]
     skin_memory_s: float = 1.0  # time constant of the colour of the skin
     background_tolerance: float = 0.055  # largest channel difference to the background, 0..1
-    soft_unclassified: float = 0.25  # weight of a rendered pixel over foreground of no known colour
-    soft_unknown: float = 0.5  # the same where the background was never seen
+    soft_unclassified: float = 0.25  # weight of a rendered pixel over foreground of another colour
+    soft_unknown: float = 0.5  # the same over unknown background
 
     # the light
     poor_classification: float = 0.4  # under this share of shirt pixels, other lights are tried

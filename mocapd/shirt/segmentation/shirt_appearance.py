@@ -2,7 +2,7 @@
 
 The colour model (paper section 5.1) lives in white-balanced RGB; W maps the camera's colours to it.
 Within a light, each colour is followed in the camera's own space, because a 3x3 matrix cannot
-follow shadow, interreflection and the camera's response; colours not seen keep what W says.
+follow shadow, interreflection and the camera's response. A colour out of view keeps its prior from W.
 """
 
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from mocapd.types import Floats, Singles
 
 N = 10
 _BGR = np.array([2, 1, 0])
-_SEEN_PX = 12.0  # pixels a colour needs to count as seen
+_VISIBLE_PX = 12.0  # least pixels of a visible colour
 _PRIOR_PX = 60.0  # weight of the prior against learned pixels
 
 
@@ -33,11 +33,11 @@ def fresh(W: Floats) -> ShirtAppearance:
 def learn(
     appearance: ShirtAppearance, sums: Floats, dt_s: float, memory_s: float
 ) -> ShirtAppearance:
-    """Blend in the statistics of a new frame; a colour that was not seen keeps its memory."""
+    """Blend in the statistics of a new frame; an invisible colour keeps its statistics."""
     keep = np.exp(-dt_s / memory_s)
-    seen = sums[:, :1] >= _SEEN_PX
+    visible = sums[:, :1] >= _VISIBLE_PX
     # each frame weighs at most so many pixels that an old memory of few can be outvoted
-    blended = np.where(seen, keep * appearance.sums + (1.0 - keep) * sums, appearance.sums)
+    blended = np.where(visible, keep * appearance.sums + (1.0 - keep) * sums, appearance.sums)
     return replace(appearance, sums=blended)
 
 
@@ -50,8 +50,8 @@ def gaussians(
     shading_sd: float,
 ) -> tuple[Floats, Floats]:
     """Means (10,3) and covariances (10,3,3) in the camera's BGR 0..1."""
-    # the mean is the camera's own once the colour is well seen; a spread learned from what was
-    # classified would grow by itself until it swallows skin and trousers, so the model's is kept
+    # the mean is the camera's own once the colour is well visible; a spread learned from what was
+    # classified would grow by itself until it covers skin and trousers, so the model's stays
     return camera_gaussians(
         appearance.W,
         appearance.sums,
@@ -74,15 +74,15 @@ def camera_gaussians(
     noise_sd: float,
     shading_sd: float,
 ) -> tuple[Floats, Floats]:
-    """Means (N,3) and covariances (N,3,3) in BGR 0..1 of the model's colours behind W (3,3), or as `sums` (N,4) have seen
-    them: prior_px pixels are half believed."""
+    """Means (N,3) and covariances (N,3,3) in BGR 0..1 of the model's colours behind W (3,3), blended with
+    the measured `sums` (N,4): both weigh the same at prior_px pixels."""
     # in numpy: as a kernel it took three seconds to compile, and saved 0.1 ms a frame
     inverse = np.linalg.inv(W)[::-1]  # rows to b, g, r
     n = sums[:, :1]
     trust = n / (n + prior_px)
     expected = model_mean @ inverse.T
-    seen = np.divide(sums[:, 1:], n, out=expected.copy(), where=n > 0.0)
-    mean = trust * seen + (1.0 - trust) * expected
+    measured = np.divide(sums[:, 1:], n, out=expected.copy(), where=n > 0.0)
+    mean = trust * measured + (1.0 - trust) * expected
     eye = np.eye(3)
     covariance = inverse @ (model_covariance + cloth_sd**2 * eye) @ inverse.T + noise_sd**2 * eye
     covariance += shading_sd**2 * mean[:, :, None] * mean[:, None, :]
@@ -99,42 +99,42 @@ def whitening(mean: Floats, covariance: Floats) -> Singles:
 
 
 def white_balance(appearance: ShirtAppearance, model_mean: Floats, ridge: float = 0.02) -> Floats:
-    """W (3,3) from the learned means of the colours seen (paper section 5.2, step 5), pulled to the last W."""
+    """W (3,3) from the learned means of the visible colours (paper section 5.2, step 5), pulled to the last W."""
     n = appearance.sums[:, 0]
-    seen = n >= _SEEN_PX
-    if seen.sum() < 3:
+    visible = n >= _VISIBLE_PX
+    if visible.sum() < 3:
         return appearance.W
-    image = (appearance.sums[seen, 1:4] / n[seen, None])[:, _BGR]
+    image = (appearance.sums[visible, 1:4] / n[visible, None])[:, _BGR]
     # normal equations: three unknowns a row, and the ridge keeps them well conditioned
-    weighted = (np.minimum(n[seen], 400.0) / 400.0)[:, None] * image
+    weighted = (np.minimum(n[visible], 400.0) / 400.0)[:, None] * image
     moments = weighted.T @ image + ridge * np.eye(3)
-    target = weighted.T @ model_mean[seen] + ridge * appearance.W.T
+    target = weighted.T @ model_mean[visible] + ridge * appearance.W.T
     W: Floats = np.asarray(np.linalg.solve(moments, target)).T
     return W
 
 
-def transported(
+def adapt_to_light(
     appearance: ShirtAppearance, observed: Floats, model_mean: Floats
 ) -> ShirtAppearance:
-    """The appearance in a new light, from what is seen now where each colour is expected.
+    """The appearance in a new light, from the pixels at the expected place of each colour.
 
-    One matrix M carries the known colours to the observed ones (10,4 statistics of the predicted
+    One matrix M maps the reference colours to the observed ones (10,4 statistics of the predicted
     patches, classified or not): least squares drawn towards a plain change of brightness, so that
     few colours suffice.
     """
     inverse = np.linalg.inv(appearance.W)
-    known = (model_mean @ inverse.T)[:, _BGR]
+    reference = (model_mean @ inverse.T)[:, _BGR]
     n = appearance.sums[:, 0]
-    learned = n >= _SEEN_PX
-    known[learned] = appearance.sums[learned, 1:4] / n[learned, None]
-    seen = observed[:, 0] >= _SEEN_PX
-    if seen.sum() < 2:
+    learned = n >= _VISIBLE_PX
+    reference[learned] = appearance.sums[learned, 1:4] / n[learned, None]
+    visible = observed[:, 0] >= _VISIBLE_PX
+    if visible.sum() < 2:
         return appearance
-    now = observed[seen, 1:4] / observed[seen, :1]
-    gain = float(np.median(now.sum(axis=1) / known[seen].sum(axis=1)))
-    weight = np.sqrt(np.minimum(observed[seen, :1], 200.0) / 200.0)
+    now = observed[visible, 1:4] / observed[visible, :1]
+    gain = float(np.median(now.sum(axis=1) / reference[visible].sum(axis=1)))
+    weight = np.sqrt(np.minimum(observed[visible, :1], 200.0) / 200.0)
     ridge = 0.15
-    A = np.concatenate([weight * known[seen], ridge * np.eye(3)])
+    A = np.concatenate([weight * reference[visible], ridge * np.eye(3)])
     b = np.concatenate([weight * now, ridge * gain * np.eye(3)])
     M = np.linalg.lstsq(A, b, rcond=None)[0].T
     stretch = np.linalg.svd(M, compute_uv=False)

@@ -11,7 +11,7 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, PARENTS
-from mocapd.fit.limbs.two_bones import LIMBS
+from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm

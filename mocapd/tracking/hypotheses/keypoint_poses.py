@@ -11,7 +11,7 @@ import numpy as np
 
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.limb_candidates import turned_rad2
-from mocapd.fit.limbs.two_bones import LIMBS
+from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.tracking.hypotheses.base import WHOLE, Judged, Situation

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from mocapd.body.skeleton import INDEX
-from mocapd.fit.limbs.two_bones import LIMBS, bent_towards
+from mocapd.fit.limbs.two_bone_ik import LIMBS, two_bone_pose
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
@@ -89,7 +89,7 @@ def _with_legs_at(
     here_m, here_xyzw = fitter.joints(state)
     local = state.local_xyzw.copy()
     for leg in _LEGS:
-        bent = bent_towards(leg, fitter.model.rest_m, here_m, here_xyzw, joints_m)
+        bent = two_bone_pose(leg, fitter.model.rest_m, here_m, here_xyzw, joints_m)
         if bent is not None:
             local[[leg.upper, leg.lower]] = bent
     state = replace(state, local_xyzw=rotations.canonical(local))

@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.body.skeleton import INDEX, OTHER_SIDE
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.limbs.two_bones import LIMBS, bent_towards
+from mocapd.fit.limbs.two_bone_ik import LIMBS, two_bone_pose
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
@@ -118,7 +118,7 @@ def _bent(
     local = state.local_xyzw.copy()
     for name in limbs:
         limb = LIMBS[name]
-        bent = bent_towards(limb, fitter.model.rest_m, joints_m, globals_xyzw, places_m)
+        bent = two_bone_pose(limb, fitter.model.rest_m, joints_m, globals_xyzw, places_m)
         if bent is not None:
             local[[limb.upper, limb.lower]] = bent
     return replace(state, local_xyzw=rotations.canonical(local))

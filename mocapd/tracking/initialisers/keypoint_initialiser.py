@@ -123,12 +123,12 @@ class KeypointInitialiser:
         for _ in range(p.looks):
             watch = self._joints.watch(fitter, state, self._views)
             terms = self._joints.term(fitter.model, map(watch, who.blobs))
-            if not terms or len(terms[0].seen) < len(who.blobs):
+            if not terms or len(terms[0].rays) < len(who.blobs):
                 return None
             joints = terms[0]
             if max(joints.median_spreads_m(p.least_joints)) > p.hopeless_m:
                 return None
-            places_m = triangulated_joints(joints.seen, hips_m, p.middle_sd_m)
+            places_m = triangulated_joints(joints.rays, hips_m, p.middle_sd_m)
             posed = pose_through(fitter, places_m, factors, information)
             if posed is None:
                 return None
@@ -167,7 +167,7 @@ class KeypointInitialiser:
     def _candidates(self, shadows: bool) -> list[tuple[Floats, Standing]]:
         """Where somebody's middle (3,) may be, and the pieces of the foreground there."""
         views = self._views
-        blobs = {i: blobs_of(views.each[i].before, shadows, self._start) for i in views.present}
+        blobs = {i: blobs_of(views.each[i].foreground, shadows, self._start) for i in views.present}
         if not blobs or any(not one for one in blobs.values()):
             return []
         scales = [one.image_scale for one in views.each]

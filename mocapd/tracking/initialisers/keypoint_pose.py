@@ -3,7 +3,7 @@
 Nothing is assumed of the stance: somebody may sit, kneel, lie, or turn the back. Two steps, neither of which iterates:
 weighted linear triangulation of all joints together, where each camera also says how much farther away than the hips each
 joint is, so that cameras 12 cm apart and even one suffice; then the trunk by its four corners, and each limb by the two
-bones that lead to its joints (`fit/limbs/two_bones.py`). A fit refines what comes of it.
+bones that lead to its joints (`fit/limbs/two_bone_ik.py`). A fit refines what comes of it.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.limbs.two_bones import LIMBS, bent_towards
+from mocapd.fit.limbs.two_bone_ik import LIMBS, two_bone_pose
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays
@@ -82,7 +82,7 @@ def pose_through(
     state = MotionState(root_m, local, np.zeros(fitter.model.n_pose), factors, information)
     joints_m, globals_xyzw = fitter.joints(state)
     for limb in LIMBS.values():
-        bent = bent_towards(limb, rest_m, joints_m, globals_xyzw, places_m)
+        bent = two_bone_pose(limb, rest_m, joints_m, globals_xyzw, places_m)
         if bent is not None:
             local[[limb.upper, limb.lower]] = bent
     return MotionState(root_m, rotations.canonical(local), state.velocity, factors, information)

@@ -126,7 +126,9 @@ class PersonSearch:
         begins = self._under_way is None
         if self._under_way is None:
             self._see()
-            self._motion.look(t_ns, {i: self._views.each[i].before for i in self._views.present})
+            self._motion.look(
+                t_ns, {i: self._views.each[i].foreground for i in self._views.present}
+            )
             self._under_way = self._look(factors, information)
         until_ns = self._clock_ns() + nanoseconds(self._params.longest_s)
         try:
@@ -198,13 +200,13 @@ class PersonSearch:
     def _see(self) -> None:
         """Everything that stands before the background."""
         self._views.mark_body(None)
-        self._views.stand_before()
-        self._views.take_uncovered()
+        self._views.update_foreground()
+        self._views.remove_ghosts()
 
     def _standing(self, shadows: bool) -> list[_Seen]:
         """The likeliest people before the background; shadows: with what may be one."""
         p, views = self._params, self._views
-        blobs = {i: blobs_of(views.each[i].before, shadows, p) for i in self._clear_cameras()}
+        blobs = {i: blobs_of(views.each[i].foreground, shadows, p) for i in self._clear_cameras()}
         smaller = [one.image_scale for one in views.each]
         stature_m = self._silhouettes.model.stature_m
         people = standing(blobs, self._cameras, smaller, stature_m, p)[: p.people]
@@ -214,7 +216,9 @@ class PersonSearch:
         """Without those whose picture hardly shows its background, as in another light or with somebody close to the lens:
         a silhouette that fills the picture says nothing. All where fewer than two would be left."""
         views, most = self._views, self._params.most_share
-        clear = [i for i in views.present if np.mean(views.each[i].before != BACKGROUND) <= most]
+        clear = [
+            i for i in views.present if np.mean(views.each[i].foreground != BACKGROUND) <= most
+        ]
         return clear if len(clear) > 1 else list(views.present)
 
     def _is_likely(self, fit: Fit) -> bool:

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.body_drawing import Roi
 from mocapd.fit.fit_result import Fit
+from mocapd.fit.idmap_renderer import Roi
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.term import Term

@@ -13,9 +13,7 @@ from mocapd.vision.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays, sca
 SCALE_STEP = 1.2  # of neighbouring sizes; the cascade bears a tenth either way
 _MOST_WINDOWS = 4096
 STEP = 2  # of the window, at the cascade's own scale
-_PROMISING = (
-    6  # stages that a window passes before those beside it are looked at: one in fifty does
-)
+_PROMISING = 6  # stages that a window passes before its neighbours are scanned: one in fifty does
 _NEAR = 0.3  # of the size: windows closer than that, and alike in size, mean the same face
 _ALIKE = 1.5
 
@@ -70,7 +68,7 @@ def _integral(grey: NDArray[Any]) -> NDArray[np.int32]:
     return np.asarray(cv2.integral(grey), np.int32)
 
 
-def grouped(windows: Floats, least_windows: int) -> tuple[FaceBox, ...]:
+def group_windows(windows: Floats, least_windows: int) -> tuple[FaceBox, ...]:
     """Faces on which at least so many of the windows (n,3) agree, the surest first."""
     left = np.asarray(windows, dtype=float)
     boxes = []
@@ -89,11 +87,11 @@ def faces_near(
     cascade: CascadeArrays, grey: Bytes, x_px: float, y_px: float, size_px: float, reach_px: float,
     least_windows: int,
 ) -> tuple[FaceBox, ...]:  # fmt: skip
-    """Faces of about this size whose middle is within reach of a place, looked for in three sizes."""
+    """Faces of about this size with their middle within reach of a place; scans three sizes."""
     half = 0.5 * SCALE_STEP * size_px + reach_px
     region = (int(x_px - half), int(y_px - half), int(x_px + half) + 2, int(y_px + half) + 2)
     sizes = (size_px / SCALE_STEP, size_px, size_px * SCALE_STEP)
-    return grouped(face_windows(cascade, grey, sizes, region), least_windows)
+    return group_windows(face_windows(cascade, grey, sizes, region), least_windows)
 
 
 def _same_face(a: Floats, b: Floats) -> NDArray[np.bool_]:

@@ -15,7 +15,7 @@ from mocapd.assets import asset_path
 from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.heatmaps.heatmap_kernels import fill_input, read_maps
 
-# In the order of the maps. A joint has a left and a right one side by side
+# In the order of the maps. Left and right of a joint are neighbours
 BODY_JOINTS = (
     "head", "neck", "hips", "leftUpperArm", "rightUpperArm", "leftLowerArm", "rightLowerArm", "leftHand", "rightHand",
     "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg", "leftFoot", "rightFoot",
@@ -30,11 +30,11 @@ _FILE = "joint_heatmaps.onnx"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SeenJoints:
+class DetectedJoints:
     """The joints of one picture, and where the person is.
 
     at_cells (J,2): mean x, y of each map, the middle of the first cell being 0; spread_cells2 (J,3): its variances xx, xy,
-    yy; farther_m (J,): than the hips, of somebody 1.75 m tall, with the scale_m (J,) of its Laplace distribution; mask_odds
+    yy; farther_m (J,): than the hips, for a stature of 1.75 m, with the scale_m (J,) of its Laplace distribution; mask_odds
     (96,96): logarithms of the odds that a pixel is the person.
     """
 
@@ -45,10 +45,10 @@ class SeenJoints:
     mask_odds: Singles
 
     @property
-    def of_body(self) -> "SeenJoints":
+    def of_body(self) -> "DetectedJoints":
         """Of `BODY_JOINTS` alone."""
         n = len(BODY_JOINTS)
-        return SeenJoints(
+        return DetectedJoints(
             self.at_cells[:n], self.spread_cells2[:n], self.farther_m[:n], self.scale_m[:n], self.mask_odds
         )  # fmt: skip
 
@@ -62,14 +62,14 @@ class JointNetwork:
         self._net = cv2.dnn.readNetFromONNX(str(asset_path(_FILE)), cv2.dnn.ENGINE_CLASSIC)
         self._input = np.zeros((1, 4, INPUT_PX, INPUT_PX), np.float32)
 
-    def look(self, picture: Bytes, background: Singles, known: Bytes) -> SeenJoints:
-        """Of a picture (96,96,3) about a person; background (96,96,3): the room without it, where that is known (96,96)."""
-        fill_input(picture, background, known, self._input[0])
+    def detect(self, picture: Bytes, background: Singles, valid: Bytes) -> DetectedJoints:
+        """Joints in a picture (96,96,3) of a person; background (96,96,3): the empty room, where `valid` (96,96) is not 0."""
+        fill_input(picture, background, valid, self._input[0])
         self._net.setInput(self._input)
         maps, mask = self._net.forward(["maps", "mask"])
         n = len(JOINTS)
         out = np.empty((n, 7))
         read_maps(np.ascontiguousarray(maps[0]), n, out)
-        return SeenJoints(
+        return DetectedJoints(
             out[:, :2].copy(), out[:, 2:5].copy(), out[:, 5].copy(), out[:, 6].copy(), mask[0, 0].copy()
         )  # fmt: skip

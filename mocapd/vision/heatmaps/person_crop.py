@@ -1,4 +1,4 @@
-"""The square of a picture about a person, brought to one size however far away and tall somebody is."""
+"""The square of a picture about a person, scaled to one size for any distance and stature."""
 
 from dataclasses import dataclass
 

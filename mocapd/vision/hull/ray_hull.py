@@ -30,7 +30,7 @@ class RayHullParams:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RayIntervals:
-    """Parts of rays that are inside every silhouette. own: the camera whose rays they are; eye_m (3,), ways (N,3) of
+    """Parts of rays that are inside every silhouette. own: index of their camera; eye_m (3,), ways (N,3) of
     length 1; ray_sr: the solid angle that each stands for; intervals_m (N,K,2): distances from the eye, of which the first
     counts (N,) are valid."""
 

@@ -1,6 +1,6 @@
 """A soft visual hull: each camera's evidence that a point is the person's, summed over cameras as log-odds.
 
-A hard intersection loses what one camera misses, and votes of all but one camera add ghosts. Here a point's pixel says
+A hard intersection loses every point that one camera misses; votes of all but one camera add ghosts. Here a point's pixel has
 log P(pixel | point is the person's) - log P(pixel | it is not). A point of the person's is foreground wherever it is in
 view. Another point is foreground, too, where the person stands before or behind it, which a camera expects with
 probability `covered`. So foreground is weak evidence, at most -log(covered), and certain background a veto.
@@ -42,11 +42,11 @@ def carve_log_odds(
         stack_pictures([point_log_odds(one, covered) for one in pixel_log_odds]), np.float32
     )
     sizes = [(one.shape[1], one.shape[0]) for one in pixel_log_odds]
-    sums, seen_by = np.empty(len(points_m), np.float32), np.empty(len(points_m), np.uint8)
+    sums, views = np.empty(len(points_m), np.float32), np.empty(len(points_m), np.uint8)
     sum_at_points(
-        np.ascontiguousarray(points_m), maps, *stack_projections(cameras, sizes), 0.0, sums, seen_by
+        np.ascontiguousarray(points_m), maps, *stack_projections(cameras, sizes), 0.0, sums, views
     )
-    sums[seen_by < 2] = -np.inf
+    sums[views < 2] = -np.inf
     return sums
 
 

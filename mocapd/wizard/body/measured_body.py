@@ -8,9 +8,9 @@ from mocapd.body.shape import skeleton_of
 from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import global_from_local, joint_positions
 from mocapd.calibrate.body_shape.body_shape_fit import BodyObservation
-from mocapd.fit.body_drawing import IdMapRenderer, image_scales
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.idmap_renderer import IdMapRenderer, image_scales
+from mocapd.fit.motion_state import MotionState, predict_pose
 from mocapd.geometry.camera_model import project
 from mocapd.shirt.garment import shirt_labels
 from mocapd.types import Bytes, Camera, Pose, Skeleton
@@ -55,7 +55,7 @@ def body_picture(
         ]
         cv2.polylines(out, corners, True, _OUTLINE_BGR, 1, cv2.LINE_AA)
     skeleton = skeleton_of(shape_of(model, state.factors))
-    root, local = moved(model, state, view.dt_s)
+    root, local = predict_pose(model, state, view.dt_s)
     joints = joint_positions(skeleton, Pose(root, global_from_local(skeleton, local)))
     at_px = np.rint(project(camera, joints))
     for colour_bgr, width in ((_UNDER_BGR, 5), (_BONE_BGR, 2)):

@@ -7,8 +7,8 @@ from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
 from mocapd.fit.limbs.arm_samples import arm_of
 from mocapd.fit.limbs.arms_exchanged import with_arms_exchanged
+from mocapd.fit.limbs.hand_target_poses import hand_poses
 from mocapd.fit.limbs.limb_fits import with_limb
-from mocapd.fit.limbs.reaching import poses_to
 from mocapd.fit.motion_state import MotionState
 from tests.fit.synthetic import LABELS, MODEL, fitter, standing
 
@@ -27,7 +27,7 @@ def with_hands(
     middle = joints[[arm.chain[1] for arm in ARMS.values()]].mean(axis=0)
     for arm, place in zip(ARMS.values(), (left_m, right_m), strict=True):
         present = state.local_xyzw[arm.chain[:3]]
-        to = poses_to((middle + place)[None], joints, globals_, arm, present)
+        to = hand_poses((middle + place)[None], joints, globals_, arm, present)
         state = with_limb(state, arm, to[0])
     return state
 
@@ -60,7 +60,7 @@ def test_elbows_come_as_near_to_the_others_as_the_swivels_tried() -> None:
     after = BY.joints(exchanged)[0]
     for side, other in (SIDES, SIDES[::-1]):
         arm, its = ARMS[side], ARMS[other]
-        tried = poses_to(
+        tried = hand_poses(
             joints[its.chain[3:4]], joints, globals_, arm, state.local_xyzw[arm.chain[:3]]
         )
         elbows = [BY.joints(with_limb(state, arm, pose))[0][arm.chain[2]] for pose in tried]

@@ -9,7 +9,7 @@ from mocapd.body.model import build_model
 from mocapd.body.pose_space import SIDES, full_body
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import TICK_S, FitParams, LegSearchParams
-from mocapd.fit.limbs.leg_search import LegSearch, confirmed
+from mocapd.fit.limbs.leg_search import LegSearch, confirmed_share
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.priors.pose_prior import seldom
 from mocapd.fit.solver import Fitter
@@ -54,7 +54,7 @@ def test_a_knee_that_came_up_unseen_is_found(side: str) -> None:
     search = LegSearch(FITTER, PARAMS)
     fit = FITTER.fit(posed(side, 0.0, 0.0), views, TICK_S, 4)
     missed_m = np.linalg.norm(FITTER.joints(fit.state)[0][OUTER] - there[OUTER], axis=1).max()
-    assert confirmed(side, fit) < PARAMS.uncertain
+    assert confirmed_share(side, fit) < PARAMS.uncertain
     changed: set[str] = set()
     for turn in range(6):
         fit, sides = search.improve(fit, views, TICK_S, turn)
@@ -133,4 +133,4 @@ def test_a_leg_out_of_every_picture_is_not_asked() -> None:
                              pixel_weight=np.ascontiguousarray(one.pixel_weight[:waist])))  # fmt: skip
     fit = FITTER.fit(truth, views, TICK_S, 2)
     assert fit.visible.sum() > 0.0
-    assert all(confirmed(side, fit) >= PARAMS.uncertain for side in SIDES)
+    assert all(confirmed_share(side, fit) >= PARAMS.uncertain for side in SIDES)

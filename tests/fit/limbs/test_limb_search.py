@@ -13,7 +13,7 @@ from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import HEAD, LEFT_ARM, RIGHT_ARM
 from mocapd.fit.fit_params import LimbSearchParams
-from mocapd.fit.limbs.arm_samples import arm_of, placed
+from mocapd.fit.limbs.arm_samples import arm_of, place_samples
 from mocapd.fit.limbs.arm_search import ArmSearch, arm_library, is_uncertain
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates
 from mocapd.fit.limbs.limb_scores import score_arm_poses, score_hand_places
@@ -166,7 +166,7 @@ def scores(by: Fitter, state: MotionState, view: View, side: str, hypotheses: Fl
     out = np.zeros(len(hypotheses))
     score_arms(
         hypotheses,
-        placed(by.shaper(state.factors), arm, arm.labelled),
+        place_samples(by.shaper(state.factors), arm, arm.labelled),
         MODEL.parents, base.posed, camera_arrays(camera),
         FACTOR * np.array([float(view.roi[0]), float(view.roi[1])]), 1.0 / FACTOR,
         base.zbuffer, base.ids, view.ids, view.pixel_weight, EMPTY, 1.0, NO_DEPTHS, 0.1, out,

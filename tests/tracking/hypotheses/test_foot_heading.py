@@ -44,7 +44,7 @@ def test_feet_that_point_as_they_were_seen_are_left() -> None:
 
 def test_one_camera_alone_does_not_say_where_toes_point() -> None:
     both = seen_at(FITTER.joints(standing(0.0, 0.15))[0], FEET)
-    seen = JointTerm(BODY, both.seen[:1])
+    seen = JointTerm(BODY, both.rays[:1])
     assert np.isinf(seen.crossings[1]).all()
     assert not list(turned_legs(FITTER, with_leg_turned(standing(0.0, 0.15), 2.6), seen, PARAMS))
 

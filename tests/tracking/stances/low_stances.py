@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.skeleton import INDEX, N_JOINTS, global_from_local, joint_positions
-from mocapd.fit.limbs.two_bones import LIMBS, bent_towards
+from mocapd.fit.limbs.two_bone_ik import LIMBS, two_bone_pose
 from mocapd.geometry import rotations
 from mocapd.sim.person.motion import local_rotvecs
 from mocapd.sim.person.poses import Direction
@@ -122,7 +122,7 @@ def _local(stance: LowStance, skeleton: Skeleton, swing: Floats) -> Floats:
             way = np.array(along) * mirror
             length_m = np.linalg.norm(rest_m[joint] - rest_m[above])
             places_m[joint] = places_m[above] + length_m * way / np.linalg.norm(way)
-        bent = bent_towards(limb, rest_m, rest_m, still, places_m)
+        bent = two_bone_pose(limb, rest_m, rest_m, still, places_m)
         assert bent is not None
         local[[limb.upper, limb.lower]] = bent
         shank = rotations.multiply(bent[0], bent[1])

@@ -18,7 +18,7 @@ from mocapd.published.hecht2009.head.stereo_distance import (
     view_angle_rad,
 )
 from mocapd.types import Floats
-from mocapd.vision.face.face_detection import FaceBox, face_windows, grouped
+from mocapd.vision.face.face_detection import FaceBox, face_windows, group_windows
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 _PATCH = 0.45  # of the box's side: the face without its outline
@@ -123,7 +123,7 @@ def _met(
     low, high = ends_px.min(axis=0) - size_px, ends_px.max(axis=0) + size_px
     region = (int(low[0]), int(low[1]), int(high[0]) + 1, int(high[1]) + 1)
     sizes = tuple(size_px * share for share in (0.75, 0.9, 1.08, 1.3))
-    seen = grouped(face_windows(cascade, other.grey, sizes, region), params.least_windows)
+    seen = group_windows(face_windows(cascade, other.grey, sizes, region), params.least_windows)
     best: PlacedFace | None = None
     for candidate in seen:
         xy = np.stack([normalised(mine.camera, _middle(box)), normalised(other.camera, _middle(candidate))])  # fmt: skip

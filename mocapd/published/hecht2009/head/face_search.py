@@ -27,7 +27,7 @@ from mocapd.vision.face.face_detection import (
     face_sizes,
     face_windows,
     faces_near,
-    grouped,
+    group_windows,
 )
 from mocapd.vision.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays
 
@@ -153,7 +153,9 @@ class FaceSearch:
             n += _count(size, region)
         known = [c.box for c in self.candidates if c.view == view.index]
         places = [
-            b for b in grouped(np.concatenate(windows), 1) if not any(_over(b, k) for k in known)
+            b
+            for b in group_windows(np.concatenate(windows), 1)
+            if not any(_over(b, k) for k in known)
         ]
         for place in places[:_LOOKS]:
             seen = faces_near(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
-from mocapd.fit.body_drawing import Roi, work_size
+from mocapd.fit.idmap_renderer import Roi, work_size
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
@@ -18,9 +18,9 @@ from mocapd.tracking.cues.clothes.floor_view import FloorView
 from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.clip_background import clip_background
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, stands
+from mocapd.vision.ghost_removal import brightness_edges
 from mocapd.vision.heatmaps.person_crop import PersonCrop
 from mocapd.vision.room_background import RoomBackground
-from mocapd.vision.uncovered import brightness_edges
 
 T = TypeVar("T")
 
@@ -38,7 +38,7 @@ class CameraView:
         self.name, self.image_scale = name, image_scale
         w, h = work_size_px
         self.picture = np.zeros((h, w, 3), np.uint8)
-        self.before = np.zeros((h, w), np.uint8)
+        self.foreground = np.zeros((h, w), np.uint8)
         self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be, widened
         self.drawn = np.zeros((h, w), np.uint8)  # where the tracked body is
         self.person_odds = np.zeros(
@@ -90,14 +90,14 @@ class CameraView:
             body = np.asarray(cv2.dilate(self.drawn[y0:y1, x0:x1], self.close), np.uint8)
             self.background.learn_unknown(self.picture, body, self.near)
 
-    def stand_before(self, everywhere: bool = True) -> None:
+    def update_foreground(self, everywhere: bool = True) -> None:
         """Renew what stands before the background, whose light may jump; not everywhere: about the marked body alone."""
         gain = self.background.follow_light(self.picture, self.body)
         if gain is not None:
             self.appearance.relight(gain)
         nowhere = (0, 0, 0, 0)
         within = None if everywhere else self.near or nowhere
-        self.before = self.background.before(self.picture, within)
+        self.foreground = self.background.foreground(self.picture, within)
 
 
 class CameraViews:
@@ -133,7 +133,7 @@ class CameraViews:
     ) -> None:
         """Learn each background from pictures (h,w,3) of these times, by camera, in which somebody may be all the time."""
         for i, pictures in shown.items():
-            self.each[i].background.know(*clip_background(pictures, times_s[i]))
+            self.each[i].background.set_known(*clip_background(pictures, times_s[i]))
             self.each[i].may_hold_body = True
 
     def doubt_background(self) -> None:
@@ -141,7 +141,7 @@ class CameraViews:
         for i in self.present:
             camera = self.each[i]
             if camera.may_hold_body:
-                camera.background.doubt(camera.picture, camera.drawn)
+                camera.background.forget_body(camera.picture, camera.drawn)
                 camera.may_hold_body = False
 
     @property
@@ -163,31 +163,31 @@ class CameraViews:
         drawn = None if state is None else drawing.render_about(state, dt_s, self._params.margin_px)
         self.each[i].mark_body(drawn)
 
-    def stand_before(self, everywhere: bool = True) -> None:
+    def update_foreground(self, everywhere: bool = True) -> None:
         """Renew what stands before each background; not everywhere: about the marked body alone."""
-        self._each(lambda i: self.each[i].stand_before(everywhere), self.present)
+        self._each(lambda i: self.each[i].update_foreground(everywhere), self.present)
 
     def renew_before(self, looks_round: bool) -> None:
         """Renew what stands before each background; looks_round: everywhere, where something may have been uncovered."""
         self._each(lambda i: self._renew_before(i, looks_round), self.present)
 
     def _renew_before(self, i: int, looks_round: bool) -> None:
-        self.each[i].stand_before(everywhere=looks_round)
+        self.each[i].update_foreground(everywhere=looks_round)
         if looks_round:
-            self._take_uncovered(i)
+            self._remove_ghosts_of(i)
 
-    def take_uncovered(self) -> None:
+    def remove_ghosts(self) -> None:
         """Take for background what stands before it by mistake; see `RoomBackground`. The marked body was drawn last."""
-        self._each(self._take_uncovered, self.present)
+        self._each(self._remove_ghosts_of, self.present)
 
-    def _take_uncovered(self, i: int) -> None:
+    def _remove_ghosts_of(self, i: int) -> None:
         camera, arms = self.each[i], np.zeros_like(self.each[i].drawn)
         if camera.near is not None:
             x0, y0, x1, y1 = camera.near
             ids, triangles = self.fitter.drawings[i].last(camera.near)
             part = self.fitter.model.part[np.maximum(triangles, 0)]
             arms[y0:y1, x0:x1] = (ids > 0) & ((part == LEFT_ARM) | (part == RIGHT_ARM))
-        camera.background.take_uncovered(camera.picture, camera.before, camera.drawn, arms)
+        camera.background.remove_ghosts(camera.picture, camera.foreground, camera.drawn, arms)
 
     def prepared(
         self, state: MotionState, looks_round: bool, also: Callable[[int], T]
@@ -217,7 +217,7 @@ class CameraViews:
         if roi is None:
             return None
         x0, y0, x1, y1 = roi
-        before = np.ascontiguousarray(camera.before[y0:y1, x0:x1])
+        before = np.ascontiguousarray(camera.foreground[y0:y1, x0:x1])
         drawn = drawing.last(roi)[0] if marked else drawing.render(state, dt_s, roi)
         ids = camera.appearance.classify(
             np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
@@ -238,7 +238,7 @@ class CameraViews:
             if roi is None:
                 continue
             x0, y0, x1, y1 = roi
-            ids = ((camera.before == BEFORE) & (camera.body > 0))[y0:y1, x0:x1].astype(np.uint8)
+            ids = ((camera.foreground == BEFORE) & (camera.body > 0))[y0:y1, x0:x1].astype(np.uint8)
             views.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), dt_s))
         return views
 
@@ -257,7 +257,7 @@ class CameraViews:
         camera.appearance.learn(
             np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
             self.fitter.drawings[index].render(state, dt_s, roi),
-            np.ascontiguousarray(camera.before[y0:y1, x0:x1]),
+            np.ascontiguousarray(camera.foreground[y0:y1, x0:x1]),
             ids,
         )
 
@@ -267,7 +267,7 @@ class CameraViews:
             camera = self.each[i]
             if not camera.background.is_new:
                 cv2.dilate(
-                    stands(camera.before).astype(np.uint8),
+                    stands(camera.foreground).astype(np.uint8),
                     camera.beside,
                     dst=camera.body,
                 )

@@ -166,7 +166,7 @@ class ClothesCue:
             return None
         fit, names = found
         self.cameras.mark_body(fit.state)
-        self.cameras.take_uncovered()
+        self.cameras.remove_ghosts()
         self.cameras.doubt_background()
         self._fits.wardrobe.learn_first(fit.state, self.cameras)
         return ClothesFound(fit, fit.state, (), names)

@@ -8,9 +8,9 @@ import numpy as np
 from mocapd.body.model import BodyModel, build_model
 from mocapd.body.pose_space import full_body, upper_body
 from mocapd.each import Each, in_turn
-from mocapd.fit.body_drawing import image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
+from mocapd.fit.idmap_renderer import image_scales
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.priors.motion_prior import predicted_information
 from mocapd.fit.solver import Fitter
@@ -122,14 +122,14 @@ class ClothesFits:
         cameras.take({}, dict.fromkeys(range(len(cameras.each)), 0.0))
         cameras.mark_body(somebody)
         cameras.seed_background()
-        cameras.stand_before()
+        cameras.update_foreground()
         self.wardrobe.learn_first(somebody, cameras)
         views = cameras.classified(somebody)
         if not views:
             return  # nobody at the origin is in any picture
         fitter = self.fitter
         views = with_depths(fitter, somebody, views, frames, self.params.depths)
-        if fitter.is_narrow(somebody, views):  # black pictures have no depths
+        if fitter.has_small_baseline(somebody, views):  # black pictures have no depths
             unseen = np.full(views[0].ids.shape, np.nan, np.float32)
             views[0] = replace(views[0], depth_m=unseen)
         joints = self.terms.joints
@@ -252,7 +252,7 @@ class ClothesFits:
         if cameras.outline_contrast() < self.params.least_contrast:
             return None
         cameras.seed_background()
-        cameras.stand_before()
+        cameras.update_foreground()
         self.wardrobe.learn_first(there, cameras)
         fitter, views = self.fitter, cameras.classified(there)
         if not views:

@@ -3,10 +3,10 @@
 from dataclasses import dataclass, field
 
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams, MotionPriorParams
-from mocapd.fit.seen_depth import SeenDepthParams
-from mocapd.fit.terms.distance_measuring import MeasuringParams
+from mocapd.fit.stereo_depth import StereoDepthParams
 from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.fit.terms.planted_term import PlantedParams
+from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
 from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
 from mocapd.tracking.hypotheses.foot_heading import FootHeadingParams
@@ -117,13 +117,13 @@ class ClothesParams:
     feet: PlantedFeetParams = field(default_factory=PlantedFeetParams)
     flip: FlipParams = field(default_factory=FlipParams)
     limb_swap: LimbSwapParams = field(default_factory=LimbSwapParams)
-    depths: SeenDepthParams = field(default_factory=SeenDepthParams)
+    depths: StereoDepthParams = field(default_factory=StereoDepthParams)
     joints: JointViewParams = field(default_factory=JointViewParams)
     seen_pose: SeenPoseParams = field(default_factory=SeenPoseParams)
     pelvis_heading: PelvisHeadingParams = field(default_factory=PelvisHeadingParams)
     foot_heading: FootHeadingParams = field(default_factory=FootHeadingParams)
-    distances: MeasuringParams = field(
-        default_factory=lambda: MeasuringParams(points=10, leg_points=24)
+    distances: StereoMatchParams = field(
+        default_factory=lambda: StereoMatchParams(points=10, leg_points=24)
     )
 
     margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]

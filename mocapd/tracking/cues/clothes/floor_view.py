@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mocapd.fit.body_drawing import Roi, work_size
+from mocapd.fit.idmap_renderer import Roi, work_size
 from mocapd.geometry.camera_model import centre, rays
 from mocapd.tracking.cues.clothes.floor_view_kernels import near_on_floor
 from mocapd.types import Bytes, Camera, Floats

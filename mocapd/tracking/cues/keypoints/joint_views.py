@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import INDEX
-from mocapd.fit.motion_state import MotionState, gone_on
+from mocapd.fit.motion_state import MotionState, predict_state
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays, JointTerm
 from mocapd.geometry.camera_model import to_camera, undistort
@@ -57,7 +57,7 @@ class JointViews:
         def see(i: int) -> JointRays | None:
             late_s, there_m = cameras.present[i], here_m
             if late_s:
-                there_m, _ = fitter.joints(gone_on(fitter.model, predicted, late_s))
+                there_m, _ = fitter.joints(predict_state(fitter.model, predicted, late_s))
             return self._rays(fitter, i, cameras.each[i], here_m, there_m)
 
         return see
@@ -78,7 +78,7 @@ class JointViews:
         if middle[2] < _NEAREST_M:
             return None
         crop = crop_about(camera, middle, SIDE_M * size, INPUT_PX, k)
-        seen = self._networks[index].look(*_cut_out(view, crop))
+        seen = self._networks[index].detect(*_cut_out(view, crop))
         view.mark_person(seen.mask_odds, crop)
         crop_px = seen.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
         frame_px = ((crop_px - crop.corner_px) / crop.scale + 0.5) * k - 0.5
@@ -103,7 +103,7 @@ class JointViews:
 def _cut_out(view: CameraView, crop: PersonCrop) -> tuple[Bytes, Singles, Bytes]:
     """The picture, the background, and where that is known."""
     M, size = crop.affine, (INPUT_PX, INPUT_PX)
-    room, known = view.background.known_room()
+    room, known = view.background.empty_room()
     picture = cv2.warpAffine(view.picture, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
     background = cv2.warpAffine(room, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
     there = cv2.warpAffine(known, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))

@@ -9,9 +9,9 @@ from mocapd.body.model import BodyModel, build_model
 from mocapd.body.pose_space import SIDES
 from mocapd.clock import nanoseconds
 from mocapd.each import Each, in_turn
-from mocapd.fit.body_drawing import Roi, image_scales
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
+from mocapd.fit.idmap_renderer import Roi, image_scales
 from mocapd.fit.limbs.arm_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
@@ -236,7 +236,7 @@ class ShirtCue:
         if fit is None:
             return None
         for one in sightings:
-            self.segmenters.each[one.index].relight(one.found.W)
+            self.segmenters.each[one.index].set_light(one.found.W)
         # read the pictures again, now with the pose as prior, and fit once more
         return self._fitted(fit.state, wearer.taught_s, present, turn)
 

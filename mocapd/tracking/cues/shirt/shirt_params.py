@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from mocapd.fit.fit_params import FitParams, LimbSearchParams, MotionPriorParams
-from mocapd.fit.terms.distance_measuring import MeasuringParams
+from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 from mocapd.tracking.velocity import VelocityParams
 
@@ -28,7 +28,7 @@ class ShirtParams:
     segmentation: SegmentationParams = field(default_factory=SegmentationParams)
     shape: ShapeLearningParams = field(default_factory=ShapeLearningParams)
     # points by the hundred share the errors of cloth and surface: together they count as three would alone
-    distances: MeasuringParams = field(default_factory=lambda: MeasuringParams(sd_m=0.27))
+    distances: StereoMatchParams = field(default_factory=lambda: StereoMatchParams(sd_m=0.27))
 
     # motion from frame to frame
     velocity: VelocityParams = field(default_factory=VelocityParams)

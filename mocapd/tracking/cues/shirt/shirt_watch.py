@@ -6,7 +6,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.clock import nanoseconds, seconds
-from mocapd.fit.motion_state import MotionState, gone_on
+from mocapd.fit.motion_state import MotionState, predict_state
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
 from mocapd.tracking.track_state import Proportions, TrackState, in_t_pose
@@ -51,7 +51,7 @@ class ShirtWatch:
         elif self.elsewhere is not None:
             other = self.elsewhere
             dt_s = max(seconds(t_ns - other.t_ns), 1e-3)
-            ahead = gone_on(self._whole, other.motion, dt_s, self._damping)
+            ahead = predict_state(self._whole, other.motion, dt_s, self._damping)
             found = cue.follow(other, ahead, dt_s, present, frames, turn, probe)
         elif t_ns < self._next_look_ns and not is_believed:
             self.has_looked = False

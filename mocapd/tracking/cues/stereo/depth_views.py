@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.seen_depth import SeenDepthParams, StereoPair, seen_depth_m
 from mocapd.fit.solver import Fitter
+from mocapd.fit.stereo_depth import StereoDepthParams, StereoPair, stereo_depth_m
 from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.stereo.texture_distance import greys_of
@@ -21,14 +21,14 @@ def with_depths(
     predicted: MotionState,
     views: Sequence[View],
     frames: FrameSet,
-    params: SeenDepthParams,
+    params: StereoDepthParams,
 ) -> list[View]:
     """The views, of which the first knows depths, where cameras look from one side; as they are where not.
 
     predicted: a body that the fitter drew last into every view. What is classified beside it, and stands far behind it (a
     passer-by, what was uncovered of the room), is not of it.
     """
-    if len(views) != 2 or not fitter.is_narrow(predicted, views):
+    if len(views) != 2 or not fitter.has_small_baseline(predicted, views):
         return list(views)
     greys = greys_of(fitter, views, frames)
     out = []
@@ -38,7 +38,7 @@ def with_depths(
             drawing.camera, fitter.drawings[views[its].index].camera, (greys[mine], greys[its]), drawing.image_scale
         )  # fmt: skip
         beside = (view.ids > 0) & (drawing.last(view.roi)[0] == 0)
-        far_m = seen_depth_m(
+        far_m = stereo_depth_m(
             beside, view.roi, pair, predicted.root_m, params.room_m, params, fitter.each
         )
         away_m = float(np.linalg.norm(predicted.root_m - centre(drawing.camera)))
@@ -49,7 +49,7 @@ def with_depths(
             pixel_weight=np.where(behind, _SURE, view.pixel_weight),
         )  # fmt: skip
         if mine == 0:
-            depth_m = seen_depth_m(
+            depth_m = stereo_depth_m(
                 before, view.roi, pair, predicted.root_m, params.farther_m, params, fitter.each
             )
             if np.isfinite(depth_m).any():

@@ -7,8 +7,8 @@ import numpy as np
 
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
-from mocapd.fit.terms.distance_measuring import MeasuringParams, measured_distances
 from mocapd.fit.terms.distance_term import DistanceTerm
+from mocapd.fit.terms.stereo_match_term import StereoMatchParams, measured_distances
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.types import Bytes, FrameSet
@@ -30,14 +30,14 @@ def texture_distances(
     views: Sequence[View],
     frames: FrameSet,
     turn: int,
-    params: MeasuringParams,
+    params: StereoMatchParams,
     only: Collection[int] = (),
 ) -> tuple[Term, ...]:
     """Distances of the predicted body, which the fitter drew last into every view; none where cameras see other sides.
 
     turn: a running number, by which other points are taken; only: ids of the body's, where not all are wanted.
     """
-    if len(views) != 2 or not fitter.is_narrow(predicted, views):
+    if len(views) != 2 or not fitter.has_small_baseline(predicted, views):
         return ()
     drawing, other = (fitter.drawings[view.index] for view in views)
     first, second = greys_of(fitter, views, frames)

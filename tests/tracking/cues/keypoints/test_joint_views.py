@@ -57,9 +57,9 @@ def test_joints_of_somebody_are_seen_where_they_are() -> None:
         np.zeros(body.n_pose), np.ones(body.n_shape), initial_information(body.space),
     )  # fmt: skip
     (term,) = _looked(ClothesParams().joints, fitter, state, cameras)
-    assert len(term.seen) == len(rig.cameras)
+    assert len(term.rays) == len(rig.cameras)
     off_cm = []
-    for one in term.seen:
+    for one in term.rays:
         there = to_camera(one.camera, truth.joints_m)
         z = there[one.joints, 2]
         off_cm.append(100.0 * np.linalg.norm(one.xy * z[:, None] - there[one.joints, :2], axis=1))

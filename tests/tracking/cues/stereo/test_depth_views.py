@@ -7,8 +7,8 @@ import pytest
 
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.seen_depth import SeenDepthParams
 from mocapd.fit.solver import Fitter
+from mocapd.fit.stereo_depth import StereoDepthParams
 from mocapd.fit.view import View
 from mocapd.tracking.cues.stereo.depth_views import with_depths
 from mocapd.types import Camera, Frame, FrameSet
@@ -17,7 +17,7 @@ from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
 
-PARAMS = SeenDepthParams()
+PARAMS = StereoDepthParams()
 BESIDE = tuple(
     looking_at(name, np.array([x, 1.2, 2.6]), np.array([x, 1.1, 0.0]))
     for name, x in (("left", -0.06), ("right", 0.06))

@@ -1,7 +1,7 @@
-"""How far away everything is that one camera sees of a person, where another one beside it sees the same texture.
+"""Stereo depth of a person between two neighbouring cameras, where both see the same texture.
 
-Cameras side by side tell little by outlines and colours of what is before what; hands before a trunk that looks like the arm
-are found by this alone.
+With a small baseline outlines and colours hardly show depth order; this alone finds hands in front of a trunk of the
+same colour.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.arrays import camera_arrays
 from mocapd.each import Each, in_turn
-from mocapd.fit.body_drawing import Roi
+from mocapd.fit.idmap_renderer import Roi
 from mocapd.fit.rays_in_other_kernels import evenly_between, shown_on_rays
 from mocapd.fit.work_rays import rays_at, work_rays_in_world
 from mocapd.geometry.camera_model import centre
@@ -24,8 +24,8 @@ _APART = 2  # places: as near to the best one all are nearly as good
 
 
 @dataclass(frozen=True, slots=True)
-class SeenDepthParams:
-    """Where a point of a person is looked for, and when it is believed."""
+class StereoDepthParams:
+    """Search range of a point's depth, and when a match is accepted."""
 
     nearer_m: float = 0.9  # than the hips: an arm and half a trunk
     farther_m: float = 0.5
@@ -34,14 +34,14 @@ class SeenDepthParams:
     least_contrast: float = 4.0  # standard deviation of a patch, in grey values
     least_alike: float = 0.85
     least_ahead: float = 0.03  # of all other places: stripes along a ray are alike everywhere
-    # what is seen beside the body, and so much farther than its hips, is not of it; as far is that looked for
+    # pixels outside the body, and so much farther than its hips, are room; the search range of those
     behind_m: float = 0.7
     room_m: float = 4.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StereoPair:
-    """A camera and the one beside it, with their pictures in grey as delivered; image_scale: by how much the camera's are
+    """A camera and its neighbour, with their pictures in grey as delivered; image_scale: by how much the camera's are
     averaged down to work pictures."""
 
     camera: Camera
@@ -58,13 +58,13 @@ def grid_rays(
     return rays_at(work_rays_in_world(camera, image_scale), y, x, image_scale)
 
 
-def seen_depth_m(
+def stereo_depth_m(
     wanted: NDArray[np.bool_],
     roi: Roi,
     pair: StereoPair,
     root_m: Floats,
     farther_m: float,
-    params: SeenDepthParams,
+    params: StereoDepthParams,
     each: Each = in_turn,
 ) -> NDArray[np.float32]:
     """Along the camera's axis (h,w) [m], of where it is wanted (h,w) and near root_m (3,), no more than farther_m

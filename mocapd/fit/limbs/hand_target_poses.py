@@ -1,7 +1,7 @@
-"""Poses of an arm whose hand is where something is seen before the rest of the body.
+"""Arm poses by two-bone IK, with the hand at an object in front of the rest of the body.
 
-Of a cloud of poses few come near a hand that is stretched out to the cameras; what is seen there says where it is, and the
-elbow is somewhere on a circle.
+Few random poses come near a hand that is stretched out to the cameras. Stereo depth gives its place, and the elbow lies
+on a circle.
 """
 
 from collections.abc import Sequence
@@ -12,8 +12,8 @@ from mocapd.body.skeleton import PARENTS
 from mocapd.fit.limbs.arm_samples import Arm
 from mocapd.fit.limbs.reaching_kernels import bend_to, rotations_of_bends
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.seen_depth import GRID_PX, grid_rays
 from mocapd.fit.solver import Fitter
+from mocapd.fit.stereo_depth import GRID_PX, grid_rays
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import centre
@@ -22,36 +22,36 @@ from mocapd.types import Floats
 # Of the elbow about the line from shoulder to hand, from below it outwards
 _SWIVELS_RAD = np.radians([0.0, 50.0, 100.0, -50.0])
 _SKIN_M = 0.03  # a hand's middle is behind its skin
-_BEFORE_M = 0.12  # the rest of the body, at least
-_FOLDED = 0.3  # of an arm's length: nearer to the shoulder no hand is
+_IN_FRONT_M = 0.12  # least distance from the rest of the body
+_FOLDED = 0.3  # of an arm's length: least distance of the hand from the shoulder
 _STRETCHED = 1.05
 
 
-def reaching_poses(
+def hand_target_poses(
     fitter: Fitter, state: MotionState, arm: Arm, views: Sequence[View], hands: int, turn: int
 ) -> Floats:
-    """Local rotations (N,3,4) of collar, upper arm and forearm, of some hands and four elbows each; none where no camera
-    sees depths. turn: a running number, by which other hands are taken."""
+    """Local rotations (N,3,4) of collar, upper arm and forearm, of some hands and four elbows each; none
+    without stereo depth. turn: a running number that selects other hands."""
     present = state.local_xyzw[arm.chain[:3]]
     view = next((view for view in views if view.depth_m is not None), None)
     if view is None:
         return np.empty((0, 3, 4))
     joints, globals_ = fitter.joints(state)
-    hands_m = _seen_before(fitter, state, arm, view, joints)
+    hands_m = _points_in_front(fitter, state, arm, view, joints)
     step = max(len(hands_m) // hands, 1)
     hands_m = hands_m[turn % step :: step][:hands]
-    return poses_to(hands_m, joints, globals_, arm, present)
+    return hand_poses(hands_m, joints, globals_, arm, present)
 
 
-def _seen_before(
+def _points_in_front(
     fitter: Fitter, state: MotionState, arm: Arm, view: View, joints_m: Floats
 ) -> Floats:
-    """Places (N,3) in the arm's reach that are seen before the rest of the body."""
+    """Points (N,3) in the arm's reach in front of the rest of the body."""
     assert view.depth_m is not None
     drawing = fitter.drawings[view.index]
     base = drawing.render_parts(state, view.dt_s, view.roi, arm.others)
     depth_m = view.depth_m[::GRID_PX, ::GRID_PX]
-    y, x = np.nonzero(depth_m < base.zbuffer[::GRID_PX, ::GRID_PX] - _BEFORE_M)
+    y, x = np.nonzero(depth_m < base.zbuffer[::GRID_PX, ::GRID_PX] - _IN_FRONT_M)
     if not len(y):
         return np.empty((0, 3))
     origin = centre(drawing.camera)
@@ -65,7 +65,7 @@ def _seen_before(
     return near
 
 
-def poses_to(
+def hand_poses(
     hands_m: Floats, joints_m: Floats, globals_xyzw: Floats, arm: Arm, present_xyzw: Floats
 ) -> Floats:
     """Local rotations (N,3,4) that bring the hand's joint of an arm to each of hands_m (T,3), or as near as it reaches.
@@ -73,17 +73,17 @@ def poses_to(
     joints_m (J,3), globals_xyzw (J,4): of the body; present_xyzw (3,4): the arm's own, of which the collar stays. The
     forearm bends about its hinge, in the plane of shoulder, elbow and hand.
     """
-    upper, lower = bends_to(hands_m, joints_m, globals_xyzw, arm)
-    return bent(
+    upper, lower = limb_bones_to(hands_m, joints_m, globals_xyzw, arm)
+    return bones_to_rotations(
         upper.reshape(-1, 3), lower.reshape(-1, 3), joints_m, globals_xyzw, arm, present_xyzw
     )
 
 
-def bends_to(
+def limb_bones_to(
     hands_m: Floats, joints_m: Floats, globals_xyzw: Floats, arm: Arm
 ) -> tuple[Floats, Floats]:
     """Upper arms and forearms (S,T,3 each) [m] that bring the hand to each of hands_m (T,3), or as near as it reaches, for
-    each of S ways that the elbow is swivelled; others as `poses_to`."""
+    each of S ways that the elbow is swivelled; others as `hand_poses`."""
     shoulder, elbow, hand = joints_m[arm.chain[1:4]]
     trunk = rotations.to_matrix(globals_xyzw[PARENTS[arm.chain[0]]])
     upper, lower = np.empty((2, len(_SWIVELS_RAD), len(hands_m), 3))
@@ -94,7 +94,7 @@ def bends_to(
     return upper, lower
 
 
-def bent(
+def bones_to_rotations(
     upper: Floats,
     lower: Floats,
     joints_m: Floats,
@@ -102,7 +102,7 @@ def bent(
     arm: Arm,
     present_xyzw: Floats,
 ) -> Floats:
-    """Local rotations (T,3,4) of an arm with these upper arms and forearms (T,3 each) [m]; others as `poses_to`."""
+    """Local rotations (T,3,4) of an arm with these upper arms and forearms (T,3 each) [m]; others as `hand_poses`."""
     collar = rotations.multiply(globals_xyzw[PARENTS[arm.chain[0]]], present_xyzw[0])
     shoulder, elbow = joints_m[arm.chain[1:3]]
     pose = np.repeat(present_xyzw[None], len(upper), axis=0)

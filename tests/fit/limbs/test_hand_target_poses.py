@@ -9,8 +9,8 @@ from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.limbs.arm_samples import Arm, arm_of
+from mocapd.fit.limbs.hand_target_poses import hand_poses, hand_target_poses
 from mocapd.fit.limbs.limb_scores import score_arm_poses
-from mocapd.fit.limbs.reaching import poses_to, reaching_poses
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.types import Floats
@@ -42,7 +42,7 @@ def hands(by: Fitter, arm: Arm, poses: Floats) -> Floats:
 def poses(by: Fitter, arm: Arm, hands_m: Floats) -> Floats:
     state = standing()
     joints, globals_ = by.joints(state)
-    return poses_to(hands_m, joints, globals_, arm, state.local_xyzw[arm.chain[:3]])
+    return hand_poses(hands_m, joints, globals_, arm, state.local_xyzw[arm.chain[:3]])
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -87,7 +87,7 @@ def test_an_arm_stretched_out_to_the_cameras_is_found_by_its_depth(side: str) ->
     depth_m = np.where(one_colour > 0, drawing.last_depth_m(roi), np.float32(np.nan))
     flat = np.full(one_colour.shape, 255, np.uint8)
     view = View(0, roi, one_colour, flat, 0.0, depth_m=depth_m.astype(np.float32))
-    tried = reaching_poses(by, thought, arm, [view], 24, 0)
+    tried = hand_target_poses(by, thought, arm, [view], 24, 0)
     assert len(tried)
     tries = np.concatenate([thought.local_xyzw[arm.chain[:3]][None], tried])
     best = int(np.argmax(score_arm_poses(by, thought, arm, [view], tries, 0.0, 0.5)))
@@ -102,4 +102,4 @@ def test_nothing_is_tried_where_no_camera_sees_depths() -> None:
     by = body()
     flat = np.zeros((40, 40), np.uint8)
     view = View(0, (100, 60, 140, 100), flat, flat, 0.0)
-    assert len(reaching_poses(by, standing(), arm_of(MODEL, LABELS, "left"), [view], 24, 0)) == 0
+    assert len(hand_target_poses(by, standing(), arm_of(MODEL, LABELS, "left"), [view], 24, 0)) == 0

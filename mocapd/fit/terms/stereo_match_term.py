@@ -1,4 +1,4 @@
-"""Distances of the body's surface, measured between two cameras side by side where its cloth has texture."""
+"""Distances of the body's surface, measured by stereo matching between two neighbouring cameras."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from mocapd.body.arrays import camera_arrays
 from mocapd.body.shaping import Shaped
 from mocapd.body.surface import LEFT_LEG, RIGHT_LEG
 from mocapd.each import Each, in_turn
-from mocapd.fit.body_drawing import IdMapRenderer
+from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.rays_in_other_kernels import distances_of_triangles, shown_on_rays
 from mocapd.fit.terms.distance_term import MeasuredDistances
 from mocapd.fit.terms.map_sampling_kernels import N_GROUPS, N_PARTS, spread_over_groups
@@ -22,8 +22,8 @@ _EDGE_PX = 2  # work pixels from the body's edge: nearer, a patch holds more of 
 
 
 @dataclass(frozen=True, slots=True)
-class MeasuringParams:
-    """How many points are tried, and which are believed."""
+class StereoMatchParams:
+    """How many points are matched, and which are accepted."""
 
     points: int = 20  # tried on each part and region of the body that shows
     leg_points: int = 20  # the same of legs, which have less texture
@@ -43,16 +43,16 @@ def measured_distances(
     greys: tuple[Bytes, Bytes],
     turn: int,
     corner: tuple[int, int] = (0, 0),
-    params: MeasuringParams | None = None,
+    params: StereoMatchParams | None = None,
     each: Each = in_turn,
 ) -> MeasuredDistances:
     """Look for points of the body as expected in one camera (drawn: its ids and triangles (h,w) over the whole work
     picture, or a region of it that begins at `corner`, posed by `drawing`) in the other camera's picture.
 
     greys: both pictures as delivered; turn: a running number, by which other points are taken; each: of the halves of
-    the points. What has no texture, or does not look alike, is left out.
+    the points. Points without texture or with a poor match are left out.
     """
-    p = params if params is not None else MeasuringParams()
+    p = params if params is not None else StereoMatchParams()
     m, posed = drawing.model, drawing.posed
     y, x = _samples(drawn, m.part, p, turn)
     triangle = drawn[1][y, x].astype(np.int64)
@@ -87,7 +87,7 @@ def measured_distances(
 def _samples(
     drawn: tuple[Bytes, NDArray[np.int32]],
     part: NDArray[np.uint8],
-    params: MeasuringParams,
+    params: StereoMatchParams,
     turn: int,
 ) -> tuple[Ints, Ints]:
     """Rows and columns of pixels inside of the drawing, as many of each part's regions."""

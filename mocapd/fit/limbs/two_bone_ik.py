@@ -1,4 +1,4 @@
-"""A limb's two bones so that they lead from where it begins to two places: what no small steps reach from another pose."""
+"""Two-bone inverse kinematics: a limb's bones through given places of its middle joint and end."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from mocapd.body.skeleton import INDEX, PARENTS
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
-_STRAIGHT = 0.25  # sine of the bend up to which the plane of a limb is not known from its joints
+_STRAIGHT = 0.25  # sine of the bend below which the joints do not define the limb's plane
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,11 +32,11 @@ LIMBS = {
 }
 
 
-def bent_towards(
+def two_bone_pose(
     limb: Limb, rest_m: Floats, joints_m: Floats, global_xyzw: Floats, places_m: Floats
 ) -> Floats | None:
-    """Rotations (2,4) of the limb's bones, each relative to its parent, that lead to where its second joint and its end are
-    in places_m (J,3); None where one of these is not known.
+    """Rotations (2,4) of the limb's bones, each relative to its parent, that bring its second joint and its end to
+    places_m (J,3); None where one of these is NaN.
 
     rest_m (J,3): joints in the T-pose; joints_m (J,3) and global_xyzw (J,4): the body as it is.
     """

@@ -5,18 +5,18 @@ import pytest
 
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.seen_depth import SeenDepthParams, StereoPair, seen_depth_m
 from mocapd.fit.solver import Fitter
+from mocapd.fit.stereo_depth import StereoDepthParams, StereoPair, stereo_depth_m
 from mocapd.fit.terms.depth_agreement_kernels import compare_depths
 from mocapd.fit.view import View
 from mocapd.types import Floats
 from mocapd.vision.raster_kernels import NOTHING
-from tests.fit.synthetic import FACTOR, LABELS, MODEL, standing, stepped, textured_greys
+from tests.fit.synthetic import FACTOR, LABELS, MODEL, apply_step, standing, textured_greys
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
 
-PARAMS = SeenDepthParams()
+PARAMS = StereoDepthParams()
 LEFT, RIGHT = SIDE_BY_SIDE = tuple(
     looking_at(name, np.array([x, 1.2, 2.6]), np.array([x, 1.1, 0.0]))
     for name, x in (("left", -0.06), ("right", 0.06))
@@ -31,14 +31,14 @@ def seen(by: Fitter, state: MotionState, thought: MotionState) -> View:
     ids = drawing.render(state, 0.0, roi).copy()
     first, second = textured_greys(MODEL, SIDE_BY_SIDE, state)
     pair = StereoPair(LEFT, RIGHT, (first, second), FACTOR)
-    depth_m = seen_depth_m(ids > 0, roi, pair, thought.root_m, PARAMS.farther_m, PARAMS)
+    depth_m = stereo_depth_m(ids > 0, roi, pair, thought.root_m, PARAMS.farther_m, PARAMS)
     return View(0, roi, ids, np.full(ids.shape, 255, np.uint8), 0.0, depth_m=depth_m)
 
 
 def shifted(by: Fitter, state: MotionState, z_m: float) -> MotionState:
     step = np.zeros(MODEL.n_pose)
     step[2] = z_m
-    return stepped(by, state, step)
+    return apply_step(by, state, step)
 
 
 def body() -> Fitter:
@@ -70,11 +70,13 @@ def test_only_what_is_wanted_is_told_and_nothing_without_texture() -> None:
     wanted = drawing.render(truth, 0.0, roi) > 0
     grey = np.full((480, 640), 90, np.uint8)
     pair = StereoPair(LEFT, RIGHT, (grey, grey), FACTOR)
-    depth_m = seen_depth_m(wanted, roi, pair, truth.root_m, PARAMS.farther_m, PARAMS)
+    depth_m = stereo_depth_m(wanted, roi, pair, truth.root_m, PARAMS.farther_m, PARAMS)
     assert depth_m.shape == wanted.shape
     assert np.isnan(depth_m).all()
     nothing = np.zeros_like(wanted)
-    assert np.isnan(seen_depth_m(nothing, roi, pair, truth.root_m, PARAMS.farther_m, PARAMS)).all()
+    assert np.isnan(
+        stereo_depth_m(nothing, roi, pair, truth.root_m, PARAMS.farther_m, PARAMS)
+    ).all()
 
 
 def test_a_fit_costs_more_where_depths_deny_it_and_says_of_which_patches() -> None:

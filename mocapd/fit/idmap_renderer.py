@@ -11,7 +11,7 @@ from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
 from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
-from mocapd.fit.motion_state import MotionState, moved
+from mocapd.fit.motion_state import MotionState, predict_pose
 from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.types import Camera, Floats
 from mocapd.vision.raster_kernels import bounds, label_triangles, rasterise
@@ -80,9 +80,9 @@ class IdMapRenderer:
         """The work-picture region around the body as this camera sees it; None when it is not in view."""
         w, h = work_size(self.camera, self.image_scale)
         body = self._shaper(state.factors)
-        self._project(*moved(self.model, state, dt_s), body, (0, 0, w, h))
-        n_seen, left, top, right, bottom = bounds(self.xy, self._depth, _NEAREST_M)
-        if n_seen < max(len(self.xy) // 2, 1):
+        self._project(*predict_pose(self.model, state, dt_s), body, (0, 0, w, h))
+        n_visible, left, top, right, bottom = bounds(self.xy, self._depth, _NEAREST_M)
+        if n_visible < max(len(self.xy) // 2, 1):
             return None
         x0, y0 = max(0, int(left) - margin) & ~1, max(0, int(top) - margin) & ~1
         x1, y1 = min(w, int(right) + margin), min(h, int(bottom) + margin)
@@ -90,7 +90,9 @@ class IdMapRenderer:
 
     def render(self, state: MotionState, dt_s: float, roi: Roi) -> NDArray[np.uint8]:
         """The id map (h,w) of the state dt_s after its instant."""
-        return self.draw(*moved(self.model, state, dt_s), self._shaper(state.factors), roi)[0]
+        return self.draw(*predict_pose(self.model, state, dt_s), self._shaper(state.factors), roi)[
+            0
+        ]
 
     def render_about(
         self, state: MotionState, dt_s: float, margin: int
@@ -110,7 +112,7 @@ class IdMapRenderer:
         return self._ids[: h * w].reshape(h, w), self._triangle_at[: h * w].reshape(h, w)
 
     def last_depth_m(self, roi: Roi) -> NDArray[np.float32]:
-        """Depths (h,w) of what was drawn last in this region, along the camera's axis; far away where nothing was."""
+        """Depths (h,w) of the last drawing in this region, along the camera's axis; far away on the background."""
         h, w = roi[3] - roi[1], roi[2] - roi[0]
         return self._zbuffer[: h * w].reshape(h, w)
 
@@ -119,7 +121,7 @@ class IdMapRenderer:
     ) -> PartialRender:
         """Only these triangles of the body."""
         m = self.model
-        self._project(*moved(m, state, dt_s), self._shaper(state.factors), roi)
+        self._project(*predict_pose(m, state, dt_s), self._shaper(state.factors), roi)
         ids, triangle_at = self.last(roi)
         zbuffer = self._raster(
             self.xy, m.triangles[triangles], self.labels.label[triangles], ids, triangle_at

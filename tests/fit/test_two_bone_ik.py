@@ -10,7 +10,7 @@ from mocapd.body.skeleton import (
     joint_positions,
     standard_skeleton,
 )
-from mocapd.fit.limbs.two_bones import LIMBS, bent_towards
+from mocapd.fit.limbs.two_bone_ik import LIMBS, two_bone_pose
 from mocapd.geometry import rotations
 from mocapd.types import Floats, Pose
 
@@ -38,7 +38,7 @@ def test_a_limb_in_any_pose_reaches_where_another_one_was(name: str) -> None:
         now = wanted.copy()
         now[[limb.upper, limb.lower]] = turned_somehow(rng)[[limb.upper, limb.lower]]
         joints_m, globals_xyzw = posed(now)
-        bent = bent_towards(limb, REST_M, joints_m, globals_xyzw, places_m)
+        bent = two_bone_pose(limb, REST_M, joints_m, globals_xyzw, places_m)
         assert bent is not None
         now[[limb.upper, limb.lower]] = bent
         there_m, there = posed(now)
@@ -53,7 +53,7 @@ def test_a_straight_limb_keeps_its_twist() -> None:
     limb = LIMBS["left_leg"]
     local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
     joints_m, globals_xyzw = posed(local)
-    bent = bent_towards(limb, REST_M, joints_m, globals_xyzw, joints_m)
+    bent = two_bone_pose(limb, REST_M, joints_m, globals_xyzw, joints_m)
     assert bent is not None
     assert rotations.angle_rad(bent, local[[limb.upper, limb.lower]]).max() < 1e-6
 
@@ -63,4 +63,4 @@ def test_what_was_not_seen_bends_nothing() -> None:
     joints_m, globals_xyzw = posed(np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1)))
     places_m = joints_m.copy()
     places_m[INDEX["rightHand"]] = np.nan
-    assert bent_towards(limb, REST_M, joints_m, globals_xyzw, places_m) is None
+    assert two_bone_pose(limb, REST_M, joints_m, globals_xyzw, places_m) is None

@@ -1,6 +1,6 @@
-"""What somebody uncovered who was learned with the room: where they stood the picture differs from the background by mistake.
+"""Ghost removal: a person learned as background leaves a false foreground where they stood.
 
-Such a ghost has its outline in the background, and none in the picture (Cucchiara et al. 2003).
+A ghost has edges along its outline in the background and none in the picture (Cucchiara et al. 2003).
 """
 
 from dataclasses import dataclass
@@ -13,32 +13,32 @@ from mocapd.types import Bytes, Singles
 from mocapd.vision.foreground_kernels import stands
 
 _OUTLINE = np.ones((3, 3), np.uint8)
-_BODY_EDGE = np.ones((7, 7), np.uint8)  # half of it: how near to the body edges are the body's
+_BODY_EDGE = np.ones((7, 7), np.uint8)  # edges within half of this belong to the body
 
 
 @dataclass(frozen=True, slots=True)
-class UncoveredParams:
-    """Which pieces are looked at, and when one is a ghost."""
+class GhostParams:
+    """Sizes and thresholds of the ghost test."""
 
-    least_px: int = 60  # of a piece whose outline says anything
-    # of a piece with an arm in it: how long its outline is at least, and the share of the background's edges it has at most
+    least_px: int = 60  # of a piece to test
+    # of a piece with an arm in it: least length of its outline, and most edges as a share of the background's
     arm_outline_px: int = 100
     arm_edges: float = 0.6
 
 
-def uncovered(
+def find_ghosts(
     picture: Bytes,
     background: Bytes,
     before: Bytes,
     body: Bytes,
     arms: Bytes,
-    params: UncoveredParams,
+    params: GhostParams,
 ) -> NDArray[np.bool_]:
-    """Where ghosts are (h,w): pieces of what stands before the background along whose outline it has the stronger edges, and
-    not the picture (h,w,3 each).
+    """Where ghosts are (h,w): foreground pieces with stronger edges along the outline in the background
+    than in the picture (h,w,3 each).
 
-    before (h,w): as of `stands_before`. What lies within body (h,w) is not looked at, but for its arms (h,w), which may have
-    been fitted to a ghost.
+    before (h,w): as of `stands_before`. Pieces within body (h,w) do not count, but for its arms (h,w), which the fit may have
+    put on a ghost.
     """
     there = stands(before)
     if not there.any():
@@ -59,8 +59,8 @@ def _ghosts(
     least_outline_px: int,
     share: float,
 ) -> NDArray[np.bool_]:
-    """Pieces (h,w) of what is there beside the body; pictures (h,w,3): of now, of whose edges an outline must have less than
-    this share of those of the background's."""
+    """Ghosts (h,w) among the pieces outside the body; pictures (h,w,3): now and background. A ghost's outline has less than
+    this share of the background's edges now."""
     out = np.zeros_like(there)
     # this algorithm takes a third of the time of the usual one
     n, numbered, stats, _ = cv2.connectedComponentsWithStatsWithAlgorithm(
@@ -76,13 +76,13 @@ def _ghosts(
         mask = (numbered[about] == k).astype(np.uint8)
         outline = (cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE) > 0) & away[about]
         if outline.sum() >= least_outline_px:
-            now, known = (brightness_edges(one[about])[outline].sum() for one in pictures)
-            out[about] |= (mask > 0) & (now < share * known)
+            now, room = (brightness_edges(image[about])[outline].sum() for image in pictures)
+            out[about] |= (mask > 0) & (now < share * room)
     return out
 
 
 def brightness_edges(picture: Bytes) -> Singles:
-    """How steep brightness is at each pixel (h,w) of a picture (h,w,3)."""
+    """Gradient magnitude (L1) of the brightness at each pixel (h,w) of a picture (h,w,3)."""
     grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
     across, down = (cv2.Sobel(grey, cv2.CV_32F, dx, 1 - dx) for dx in (1, 0))
     return np.asarray(np.abs(across) + np.abs(down), np.float32)
