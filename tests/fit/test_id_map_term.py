@@ -7,16 +7,12 @@ import pytest
 
 from mocapd.body.arrays import PinholeArrays
 from mocapd.body.shaping import Shaper
-from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.body.skeleton import INDEX
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
-from mocapd.fit.terms.id_map_kernels import (
-    AlignmentSums,
-    ComparedPictures,
-    Search,
-)
-from mocapd.fit.terms.id_map_sums import sum_rows
+from mocapd.fit.terms.id_map_kernels import ComparedPictures, Search
+from mocapd.fit.terms.id_map_sums import CameraSums
 from mocapd.fit.terms.nearest_pixel_kernels import labels_in_reach, offsets_by_distance
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
@@ -61,19 +57,17 @@ def accumulated(
     n_shape: int = 0,
     grid_px: float = 1.0,
 ) -> Sums:
-    out = Sums.zero(MODEL.n_pose + n_shape)
-    d_joints = np.zeros((MODEL.n_shape, N_JOINTS, 3))
     camera, offsets = CAMERAS[0], offsets_by_distance(20)
     within = int(((offsets.astype(int) ** 2).sum(axis=1) <= (RADIUS_PX / grid_px) ** 2).sum())
     fx, fy = (float(grid_px * camera.K[i, i] / COARSE) for i in (0, 1))
-    out.cost = sum_rows(
+    sums, n_unknown = CameraSums(MODEL, LABELS), MODEL.n_pose + n_shape
+    sums.gather(
         ComparedPictures(drawn.ids, drawn.triangle_at, image_ids, pixel_weight),
         Search(offsets[:within], float(RADIUS_PX), ROBUST_PX, grid_px, every, phase, edge_weight),
-        drawn.xy, MODEL.surface, LABELS, Shaper(MODEL)(state.factors).centres, MODEL.articulation,
-        drawn.joints, d_joints, PinholeArrays(camera.R, camera.t_m, fx, fy), WEIGHT,
-        AlignmentSums(out.H, out.b, out.visible, out.matched, out.unexplained),
+        drawn.xy, Shaper(MODEL)(state.factors).centres, drawn.joints, PinholeArrays(camera.R, camera.t_m, fx, fy),
+        n_unknown, WEIGHT,
     )  # fmt: skip
-    return out
+    return Sums(*sums.by_size[n_unknown], *sums.counts, sums.cost)
 
 
 @pytest.mark.parametrize(

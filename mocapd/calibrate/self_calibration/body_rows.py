@@ -58,18 +58,15 @@ class RowGatherer:
     def gather(self, state: MotionState, view: View) -> BodyRows:
         """The rows of one camera, at every pixel."""
         fitter, model = self.fitter, self.fitter.model
-        rows = CameraSums(model)
         drawing, body = fitter.drawings[view.index], fitter.shaper(state.factors)
+        sums, n_unknown = CameraSums(model, drawing.labels), model.n_pose + model.n_shape
         drawn = drawing.draw(*predict_pose(model, state, view.dt_s), body, view.roi)
-        rows.gather(
-            drawing, body, ComparedPictures(*drawn, view.ids, view.pixel_weight), self._search,
-            model.n_pose + model.n_shape, fitter.params.row_weight,
+        sums.gather(
+            ComparedPictures(*drawn, view.ids, view.pixel_weight), self._search, drawing.xy, body.centres, drawing.posed,
+            drawing.pinhole, n_unknown, fitter.params.row_weight,
         )  # fmt: skip
-        H, b = rows.by_size[model.n_pose + model.n_shape][:2]
-        at_m = drawing.posed.joints[0].copy()
-        return BodyRows(
-            view.index, H, b, at_m, rows.visible, rows.matched, rows.unexplained, rows.cost
-        )
+        H, b = sums.by_size[n_unknown]
+        return BodyRows(view.index, H, b, drawing.posed.joints[0].copy(), *sums.counts, sums.cost)
 
 
 def camera_columns(at_m: Floats) -> Floats:

@@ -13,7 +13,7 @@ from mocapd.each import Each
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.motion_state import MotionState, predict_pose
-from mocapd.fit.terms.id_map_kernels import ComparedPictures, Search
+from mocapd.fit.terms.id_map_kernels import AreaCounts, ComparedPictures, Search
 from mocapd.fit.terms.id_map_sums import CameraSums, search_within
 from mocapd.fit.terms.nearest_pixel_kernels import offsets_by_distance
 from mocapd.fit.view import View
@@ -40,7 +40,7 @@ class IdMapTerm:
         self, drawings: Sequence[IdMapRenderer], model: BodyModel, params: FitParams, each: Each
     ) -> None:
         self._drawings, self._model, self._params, self._each = drawings, model, params, each
-        self._cameras = [CameraSums(model) for _ in drawings]
+        self._cameras = [CameraSums(model, drawing.labels) for drawing in drawings]
         self._offsets = offsets_by_distance(params.first_radius_px)
         self._offsets_r2 = (self._offsets**2).sum(axis=1)
         self._search = cache(self._make_search)
@@ -76,19 +76,15 @@ class IdMapTerm:
         self._each(partial(self._gather, _Iteration(state, body, search, P, redraw)), views)
         H, b = np.zeros((P, P)), np.zeros(P)
         for view in views:
-            mine = self._cameras[view.index].by_size[P]
-            H += mine.H
-            b += mine.b
+            camera_H, camera_b = self._cameras[view.index].by_size[P]
+            H += camera_H
+            b += camera_b
         return H, b
 
-    def counts(self, views: Sequence[View]) -> tuple[Floats, Floats, Floats]:
-        """Visible, matched and unexplained pixels (A,) of these views by area; see `AlignmentSums`."""
-        mine = [self._cameras[view.index] for view in views]
-        return (
-            sum((one.visible for one in mine), _NO_PIXELS),
-            sum((one.matched for one in mine), _NO_PIXELS),
-            sum((one.unexplained for one in mine), _NO_PIXELS),
-        )
+    def counts(self, views: Sequence[View]) -> AreaCounts:
+        """Pixels of these views by area."""
+        each = [self._cameras[view.index].counts for view in views]
+        return AreaCounts(*(sum((one[i] for one in each), _NO_PIXELS) for i in range(3)))
 
     def cost(self, views: Sequence[View]) -> float:
         """Of these views [disagreeing pixels]."""
@@ -106,6 +102,7 @@ class IdMapTerm:
             drawn = drawing.last_coarse(view.roi) if coarse else drawing.last(view.roi)
             drawing.pose(root_m, local_xyzw, one.body.rest)
         self._cameras[view.index].gather(
-            drawing, one.body, ComparedPictures(*drawn, view.ids, view.pixel_weight), one.search, one.n_unknown,
+            ComparedPictures(*drawn, view.ids, view.pixel_weight), one.search,
+            drawing.coarse_xy if coarse else drawing.xy, one.body.centres, drawing.posed, drawing.pinhole, one.n_unknown,
             self._params.row_weight,
         )  # fmt: skip
