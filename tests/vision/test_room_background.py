@@ -77,6 +77,15 @@ def test_a_part_of_the_picture_is_told_as_the_whole_of_it() -> None:
     assert not background.foreground(picture, (0, 0, 0, 0)).any()
 
 
+def test_the_foreground_is_exactly_where_it_stands() -> None:
+    """A mask that is off by a pixel turns a body that cameras see from all sides by ten degrees."""
+    background, picture = learned(), wall(99)
+    body = np.zeros((H, W), bool)
+    body[12:41, 20:35] = True
+    picture[body] = (40, 200, 90)
+    np.testing.assert_array_equal(background.foreground(picture) == BEFORE, body)
+
+
 def test_specks_are_noise_gaps_are_somebody_and_what_is_not_known_stays_so() -> None:
     background = learned()
     hidden = np.zeros((H, W), np.uint8)
