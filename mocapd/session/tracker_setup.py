@@ -16,7 +16,7 @@ from mocapd.session.side_by_side import each_camera
 from mocapd.trackers import registry
 from mocapd.trackers.registry import Resources, build
 from mocapd.tracking.base import Tracker
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.tracking.tracking_state import TrackingStateParams
 
 Progress = Callable[[str, int, int], None]  # what is being made, parts done, parts in all
@@ -49,7 +49,7 @@ def ready_tracker(
     rehearsal: hears of steps done, in all, while the tracker is stepped through the calibration's own pictures, so
     that live frames need not wait; None for recordings, which can. watched: puts another around it that is rehearsed with it.
     """
-    shape = known_shape(calibration)
+    shape = wearer_shape(calibration)
     if rehearsal is not None:
         resources = replace(resources, now_ns=monotonic_ns)
     with _pooled(resources) as pooled:

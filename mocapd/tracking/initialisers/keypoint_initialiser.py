@@ -20,9 +20,15 @@ from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, rays
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import KeypointStartParams, StartParams
-from mocapd.tracking.cues.keypoints.joint_views import JointViews
+from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
 from mocapd.tracking.initialisers.keypoint_pose import pose_through, triangulated_joints
-from mocapd.tracking.initialisers.stance import Blob, Standing, blobs_of, fit_to_blobs, views_of
+from mocapd.tracking.initialisers.standing_initialiser import (
+    Blob,
+    PersonCandidate,
+    blobs_of,
+    fit_to_blobs,
+    views_of,
+)
 from mocapd.types import Camera, Floats
 from mocapd.vision.heatmaps.person_crop import middle_of
 
@@ -41,7 +47,7 @@ class KeypointCandidate:
     """
 
     fit: Fit
-    who: Standing
+    who: PersonCandidate
     shadows: bool
     spread_m: float
     off_sds2: float
@@ -56,7 +62,7 @@ class KeypointInitialiser:
         self,
         silhouettes: Fitter,
         floor: FloorTerm,
-        joints: JointViews,
+        joints: KeypointDetectors,
         views: CameraViews,
         cameras: Sequence[Camera],
         start: StartParams,
@@ -113,7 +119,12 @@ class KeypointInitialiser:
         return one.fit.explained - (self._params.shadows_more if one.shadows else 0.0)
 
     def attempt(
-        self, middle_m: Floats, who: Standing, shadows: bool, factors: Floats, information: Floats
+        self,
+        middle_m: Floats,
+        who: PersonCandidate,
+        shadows: bool,
+        factors: Floats,
+        information: Floats,
     ) -> KeypointCandidate | None:
         """The pose of somebody about middle_m (3,) whose silhouettes are these; None where the network is far from
         sure of its joints, or sees no trunk."""
@@ -121,8 +132,8 @@ class KeypointInitialiser:
         state = _upright_about(fitter, middle_m, factors, information)
         hips_m = state.root_m
         for _ in range(p.looks):
-            watch = self._joints.watch(fitter, state, self._views)
-            terms = self._joints.term(fitter.model, map(watch, who.blobs))
+            detect = self._joints.detector(fitter, state, self._views)
+            terms = self._joints.term(fitter.model, map(detect, who.blobs))
             if not terms or len(terms[0].seen) < len(who.blobs):
                 return None
             joints = terms[0]
@@ -164,7 +175,7 @@ class KeypointInitialiser:
             and low_m <= one.lowest_m <= high_m
         )
 
-    def _candidates(self, shadows: bool) -> list[tuple[Floats, Standing]]:
+    def _candidates(self, shadows: bool) -> list[tuple[Floats, PersonCandidate]]:
         """Where somebody's middle (3,) may be, and the pieces of the foreground there."""
         views = self._views
         blobs = {i: blobs_of(views.each[i].before, shadows, self._start) for i in views.present}
@@ -182,11 +193,11 @@ class KeypointInitialiser:
 
     def _best_middle(
         self, first: int, blob: Blob, blobs: Mapping[int, Sequence[Blob]], scales: Sequence[int]
-    ) -> tuple[Floats, Standing] | None:
+    ) -> tuple[Floats, PersonCandidate] | None:
         """The distance at which the pieces of all cameras agree most about one body on the floor."""
         p, start = self._params, self._start
         eye, ray = rays(self._cameras[first], _frame_px(_middle_px(blob), scales[first])[None])
-        best: tuple[Floats, Standing] | None = None
+        best: tuple[Floats, PersonCandidate] | None = None
         for away_m in np.arange(start.nearest_m, start.farthest_m, p.step_m):
             middle_m = np.reshape(eye, 3) + away_m * np.reshape(ray, 3)
             if not 0.0 < middle_m[1] < _HIGHEST_MIDDLE_M:
@@ -203,7 +214,7 @@ class KeypointInitialiser:
                 mine[i] = one
                 error += _off_px2(one, at, foot[1], height_px, p)
             if best is None or error < best[1].error:
-                best = middle_m, Standing(below_m, mine, error)
+                best = middle_m, PersonCandidate(below_m, mine, error)
         return best
 
 

@@ -14,19 +14,19 @@ from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import (
     KeypointStartParams,
-    MotionWatchParams,
+    MotionMonitorParams,
     StartParams,
 )
-from mocapd.tracking.cues.keypoints.joint_views import JointViews
+from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
 from mocapd.tracking.initialisers.keypoint_initialiser import KeypointCandidate, KeypointInitialiser
-from mocapd.tracking.initialisers.motion_watch import MotionWatch
-from mocapd.tracking.initialisers.stance import (
-    Standing,
+from mocapd.tracking.initialisers.motion_monitor import MotionMonitor
+from mocapd.tracking.initialisers.standing_initialiser import (
+    PersonCandidate,
     blobs_of,
-    first_fit,
+    fit_first_pose,
     fit_to_blobs,
     is_standing,
-    standing,
+    person_candidates,
     views_of,
 )
 from mocapd.tracking.lost_reason import LostReason
@@ -41,7 +41,7 @@ class _Seen:
     """Somebody before the background, or likely so, and as the cameras show them; shadows: with what may be one; low: as
     the network's joints found them, who does not stand."""
 
-    who: Standing
+    who: PersonCandidate
     shadows: bool
     views: tuple[View, ...]
     low: KeypointCandidate | None = None
@@ -50,20 +50,20 @@ class _Seen:
 _Likely = tuple[Fit, _Seen]
 
 
-class LookTimes:
+class AttemptSchedule:
     """When to look. Where a piece of a look takes long, others get as many pictures before the next as it cost them."""
 
     def __init__(self, params: StartParams) -> None:
         self._pause_ns = nanoseconds(params.pause_s)
         self._most_ns = nanoseconds(params.most_rest_s)
         self._next_ns = 0
-        self._looked_ns: int | None = None  # until the frame set after it has come
+        self._attempt_ns: int | None = None  # until the frame set after it has come
 
-    def came(self, t_ns: int) -> None:
+    def on_frame_set(self, t_ns: int) -> None:
         """A frame set: the first after a piece tells how long that took."""
-        if self._looked_ns is None:
+        if self._attempt_ns is None:
             return
-        took_ns, self._looked_ns = t_ns - self._looked_ns, None
+        took_ns, self._attempt_ns = t_ns - self._attempt_ns, None
         if took_ns > self._pause_ns:
             self._next_ns = t_ns + min(took_ns, self._most_ns)
 
@@ -71,9 +71,9 @@ class LookTimes:
         """Of a frame set that came, in which nobody is known: whether it is time for a look, or for more of one."""
         return t_ns >= self._next_ns
 
-    def looked(self, t_ns: int, to_the_end: bool) -> None:
+    def on_attempt(self, t_ns: int, to_the_end: bool) -> None:
         """A piece was done at this frame set; after the last piece of a look there is a pause."""
-        self._looked_ns = t_ns
+        self._attempt_ns = t_ns
         if to_the_end:
             self._next_ns = t_ns + self._pause_ns
 
@@ -86,12 +86,12 @@ class PersonSearch:
         self,
         silhouettes: Fitter,
         floor: FloorTerm,
-        joints: JointViews,
+        joints: KeypointDetectors,
         views: CameraViews,
         cameras: Sequence[Camera],
         params: StartParams,
         low: KeypointStartParams,
-        motion: MotionWatchParams,
+        motion: MotionMonitorParams,
         now_ns: Callable[[], int],
     ) -> None:
         """silhouettes: a fitter whose body is of one colour; cameras: those of the views; low: of who does not stand;
@@ -99,13 +99,13 @@ class PersonSearch:
         self._silhouettes, self._floor, self._views = silhouettes, floor, views
         self._cameras, self._params, self._clock_ns = cameras, params, now_ns
         self._joints, self._least_joints = joints, low.least_joints
-        self._motion = MotionWatch(motion)
+        self._motion = MotionMonitor(motion)
         self._low = KeypointInitialiser(silhouettes, floor, joints, views, cameras, params, low)
         self.reset()
 
     def reset(self) -> None:
         """Look at once, and remember nobody."""
-        self.times = LookTimes(self._params)
+        self.times = AttemptSchedule(self._params)
         self._likely_m: list[Floats] = []
         self._low.reset()
         self._motion.reset()
@@ -126,7 +126,7 @@ class PersonSearch:
         begins = self._under_way is None
         if self._under_way is None:
             self._see()
-            self._motion.look(t_ns, {i: self._views.each[i].before for i in self._views.present})
+            self._motion.update(t_ns, {i: self._views.each[i].before for i in self._views.present})
             self._under_way = self._look(factors, information)
         until_ns = self._clock_ns() + nanoseconds(self._params.longest_s)
         try:
@@ -135,7 +135,7 @@ class PersonSearch:
                 next(self._under_way)
         except StopIteration as end:
             self.give_up()
-            self.times.looked(t_ns, to_the_end=True)
+            self.times.on_attempt(t_ns, to_the_end=True)
             likeliest: _Likely | None = end.value
             if likeliest is not None and not begins:
                 likeliest = self._as_now(*likeliest)
@@ -143,7 +143,7 @@ class PersonSearch:
                 return None
             self._motion.reset()
             return likeliest[0], self._names(likeliest[1])
-        self.times.looked(t_ns, to_the_end=False)
+        self.times.on_attempt(t_ns, to_the_end=False)
         return None
 
     def lost_reason(self, t_ns: int) -> LostReason | None:
@@ -155,8 +155,14 @@ class PersonSearch:
         p = self._params
         fits = []
         for seen in [one for shadows in (False, True) for one in self._standing(shadows)]:
-            fit = yield from first_fit(
-                self._silhouettes, seen.who, seen.views, factors, information, (self._floor,), p
+            fit = yield from fit_first_pose(
+                self._silhouettes,
+                seen.who,
+                seen.views,
+                factors,
+                information,
+                (self._floor,),
+                p,
             )
             fits.append((fit, seen))
         likely = [one for one in fits if self._is_likely(one[0]) and self._is_person(*one)]
@@ -207,7 +213,7 @@ class PersonSearch:
         blobs = {i: blobs_of(views.each[i].before, shadows, p) for i in self._clear_cameras()}
         smaller = [one.image_scale for one in views.each]
         stature_m = self._silhouettes.model.stature_m
-        people = standing(blobs, self._cameras, smaller, stature_m, p)[: p.people]
+        people = person_candidates(blobs, self._cameras, smaller, stature_m, p)[: p.people]
         return [_Seen(who, shadows, views_of(who, views.present)) for who in people]
 
     def _clear_cameras(self) -> list[int]:
@@ -225,8 +231,8 @@ class PersonSearch:
     def _is_person(self, fit: Fit, seen: _Seen) -> bool:
         """Whether the network knows the joints of a body where furniture may stand: in one picture of those that show enough
         of them."""
-        watch = self._joints.watch(self._silhouettes, fit.state, self._views)
-        terms = self._joints.term(self._silhouettes.model, map(watch, seen.who.blobs))
+        detect = self._joints.detector(self._silhouettes, fit.state, self._views)
+        terms = self._joints.term(self._silhouettes.model, map(detect, seen.who.blobs))
         spreads_m = [one for term in terms for one in term.median_spreads_m(self._least_joints)]
         known_m = [one for one in spreads_m if one < np.inf]
         return not known_m or min(known_m) <= self._params.spread_m

@@ -94,9 +94,9 @@ class Appearance:
             shares.append(share / share.sum())
         return float(np.minimum(*shares).sum())
 
-    def join(self, look: Sequence[int]) -> None:
+    def merge_regions(self, merge: Sequence[int]) -> None:
         """Count what was seen of each region with the region of its look, which is learned as one from now on."""
-        for k, other in enumerate(look):
+        for k, other in enumerate(merge):
             if other != k:
                 self._counts[other] += self._counts[k]
                 self._counts[k] = 0.0

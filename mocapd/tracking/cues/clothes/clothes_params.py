@@ -8,11 +8,11 @@ from mocapd.fit.terms.distance_measuring import MeasuringParams
 from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.fit.terms.planted_term import PlantedParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
-from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
+from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
 from mocapd.tracking.hypotheses.foot_heading import FootHeadingParams
 from mocapd.tracking.hypotheses.front_back_flip import FlipParams
+from mocapd.tracking.hypotheses.keypoint_starts import KeypointPoseParams
 from mocapd.tracking.hypotheses.limb_swap import LimbSwapParams
-from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams
 from mocapd.tracking.planted_feet import PlantedFeetParams
 from mocapd.tracking.velocity import VelocityParams
 from mocapd.vision.room_background import BackgroundParams
@@ -77,7 +77,7 @@ class KeypointStartParams:
 
 
 @dataclass(frozen=True, slots=True)
-class MotionWatchParams:
+class MotionMonitorParams:
     """When something that moves must be somebody who is not found."""
 
     least_px: int = 500  # of all that is before the background of a camera, in work pixels
@@ -110,15 +110,15 @@ class ClothesParams:
     appearance: AppearanceParams = field(default_factory=AppearanceParams)
     start: StartParams = field(default_factory=StartParams)
     keypoint_start: KeypointStartParams = field(default_factory=KeypointStartParams)
-    motion_watch: MotionWatchParams = field(default_factory=MotionWatchParams)
+    motion_monitor: MotionMonitorParams = field(default_factory=MotionMonitorParams)
     floor: FloorParams = field(default_factory=FloorParams)
     planted: PlantedParams = field(default_factory=PlantedParams)
     feet: PlantedFeetParams = field(default_factory=PlantedFeetParams)
     flip: FlipParams = field(default_factory=FlipParams)
     limb_swap: LimbSwapParams = field(default_factory=LimbSwapParams)
     depths: SeenDepthParams = field(default_factory=SeenDepthParams)
-    joints: JointViewParams = field(default_factory=JointViewParams)
-    seen_pose: SeenPoseParams = field(default_factory=SeenPoseParams)
+    joints: KeypointDetectionParams = field(default_factory=KeypointDetectionParams)
+    keypoint_poses: KeypointPoseParams = field(default_factory=KeypointPoseParams)
     foot_heading: FootHeadingParams = field(default_factory=FootHeadingParams)
     distances: MeasuringParams = field(
         default_factory=lambda: MeasuringParams(points=10, leg_points=24)

@@ -20,7 +20,7 @@ _LEGS = [j for name, one in LIMBS.items() if name.endswith("leg") for j in (one.
 
 
 @dataclass(frozen=True, slots=True)
-class SeenPoseParams:
+class KeypointPoseParams:
     """When a limb, or all of the body, is tried where the network has it."""
 
     limb_cost: float = 25.0  # of its joints, more than there [disagreeing pixels]
@@ -35,12 +35,12 @@ class SeenPoseParams:
     )
 
 
-def starts_as_seen(
+def keypoint_starts(
     fitter: Fitter,
     fit: Fit,
     seen: JointTerm,
     held: Sequence[Term],
-    params: SeenPoseParams,
+    params: KeypointPoseParams,
     legs_alone: bool = False,
 ) -> list[tuple[MotionState, tuple[str, ...]]]:
     """Where a fit may begin anew, and the parts of the body that change by that: with the limbs that are far from there as
@@ -63,7 +63,7 @@ def starts_as_seen(
     lost = [name for name, cost in far.items() if cost > p.limb_cost or whole]
     if not lost:
         return []
-    there = seen_pose(fitter, fit.state, seen, held, p, lost)
+    there = fit_to_keypoints(fitter, fit.state, seen, held, p, lost)
     costs_there = seen.costs(fitter.joints(there)[0])
     limbs = tuple(
         name
@@ -83,7 +83,7 @@ def starts_as_seen(
 
 
 def legs_exchanged(
-    seen: JointTerm, joints_m: Floats, costs: Floats, params: SeenPoseParams
+    seen: JointTerm, joints_m: Floats, costs: Floats, params: KeypointPoseParams
 ) -> bool:
     """Whether what was seen of the legs is these legs, but each taken for the other, which look alike."""
     other_m = joints_m.copy()
@@ -91,12 +91,12 @@ def legs_exchanged(
     return bool(costs[_LEGS].sum() - seen.costs(other_m)[_LEGS].sum() > params.limb_cost)
 
 
-def seen_pose(
+def fit_to_keypoints(
     fitter: Fitter,
     state: MotionState,
     seen: JointTerm,
     held: Sequence[Term],
-    params: SeenPoseParams,
+    params: KeypointPoseParams,
     limbs: Collection[str] = (),
 ) -> MotionState:
     """What the joints alone say, from this state on, but with these limbs bent as they say."""

@@ -45,7 +45,7 @@ class Blob:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Standing:
+class PersonCandidate:
     """Somebody of the known height at a place (3,) on the floor, as blobs of cameras, by index, show; error [work px^2]."""
 
     place_m: Floats
@@ -76,13 +76,13 @@ def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
     return out
 
 
-def standing(
+def person_candidates(
     blobs: Mapping[int, Sequence[Blob]],
     cameras: Sequence[Camera],
     image_scales: Sequence[int],
     stature_m: float,
     params: StartParams,
-) -> list[Standing]:
+) -> list[PersonCandidate]:
     """Where people of this height may stand, best first: for each blob of the first camera one, joined with the blobs of the
     others that agree most."""
     if not blobs or any(not one for one in blobs.values()):
@@ -105,14 +105,14 @@ def _best_place(
     image_scales: Sequence[int],
     stature_m: float,
     params: StartParams,
-) -> Standing | None:
+) -> PersonCandidate | None:
     camera, scale = cameras[first], image_scales[first]
     pixel = np.array([(blob.middle_x + 0.5) * scale - 0.5, camera.size_px[1] / 2.0])
     ray = rays(camera, pixel)[1].reshape(3)
     ahead = np.array([ray[0], 0.0, ray[2]])
     ahead /= np.linalg.norm(ahead)
     eye = centre(camera) * np.array([1.0, 0.0, 1.0])
-    best: Standing | None = None
+    best: PersonCandidate | None = None
     for away_m in np.arange(params.nearest_m, params.farthest_m, params.step_m):
         place = eye + away_m * ahead
         error, mine = 0.0, {}
@@ -124,7 +124,7 @@ def _best_place(
             mine[i] = one
             error += _misfit(one, top, foot, height_px)
         if best is None or error < best.error:
-            best = Standing(place, mine, error)
+            best = PersonCandidate(place, mine, error)
     return best
 
 
@@ -146,7 +146,7 @@ def is_standing(fitter: Fitter, fit: Fit) -> bool:
     )
 
 
-def views_of(who: Standing, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
+def views_of(who: PersonCandidate, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
     """Somebody's blobs as what a fit of silhouettes looks at; offsets_s: each camera's own time after the frame set's, by
     index."""
     return tuple(
@@ -155,9 +155,9 @@ def views_of(who: Standing, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
     )
 
 
-def first_fit(
+def fit_first_pose(
     fitter: Fitter,
-    who: Standing,
+    who: PersonCandidate,
     views: Sequence[View],
     factors: Floats,
     information: Floats,
@@ -202,7 +202,7 @@ def fit_to_blobs(
     return fitter.fit(state, views, params.loose_s, iterations, terms=terms)
 
 
-def _ways(who: Standing, eyes_m: Sequence[Floats]) -> tuple[list[float], list[float]]:
+def _ways(who: PersonCandidate, eyes_m: Sequence[Floats]) -> tuple[list[float], list[float]]:
     """Which way somebody may face [rad], 0 along +Z: the cameras, and past them on either side where these stand beside each
     other, as they see one side alone; or any way where these stand all around."""
     away = np.array([eye - who.place_m for eye in eyes_m])[:, [0, 2]]
