@@ -1,4 +1,4 @@
-"""Which way somebody faces is hard to tell from an outline: the body turned round, by its face or by its fit."""
+"""The front-back flip hypothesis: an outline hardly shows the facing direction, so faces and flipped fits decide."""
 
 from dataclasses import dataclass, field, replace
 
@@ -26,7 +26,7 @@ class FlipParams:
 
 
 class FrontBackFlip:
-    """Where no trunk leads that knows the way; see PoseHypothesis. Remembers what faces and fits said of the way."""
+    """See PoseHypothesis; skipped while the shirt places the trunk. Accumulates evidence from faces and fits."""
 
     def __init__(self, params: FlipParams, stature_m: float, cascade: CascadeArrays) -> None:
         """cascade: of frontal faces."""

@@ -1,9 +1,9 @@
-"""The first pose of somebody who does not stand facing the cameras: from the joints that the network sees in all pictures.
+"""The first pose of a person who does not stand facing the cameras, from detected keypoints.
 
-A piece of the foreground that all cameras show in one place is looked at by the network of heatmaps, as if somebody's middle
-were there; the pose that leads through its joints is fitted to joints and silhouettes. It counts as a person only under
-checks that furniture, shadows and screens fail: the silhouette agrees, most joints are where the body has them in every
-camera, the body touches the floor, and all of that twice in a row in one place.
+The network runs on each foreground blob that all cameras show in one place. A pose from its triangulated keypoints is
+fitted to keypoints and silhouettes. It counts as a person only if the silhouette agrees, most keypoints agree in every
+camera and the body touches the floor, in two successive searches at one place: furniture, shadows and screens fail these
+checks.
 """
 
 from collections.abc import Generator, Mapping, Sequence
@@ -56,7 +56,7 @@ class KeypointCandidate:
 
 
 class KeypointInitialiser:
-    """See the module's docstring. Remembers where somebody was at the last look."""
+    """See the module's docstring. Keeps the places of the last search."""
 
     def __init__(
         self,
@@ -76,13 +76,13 @@ class KeypointInitialiser:
         self.reset()
 
     def reset(self) -> None:
-        """Nobody was seen."""
+        """Forgets these places."""
         self._last_m: list[Floats] = []
 
     def look(
         self, factors: Floats, information: Floats
     ) -> Generator[None, None, KeypointCandidate | None]:
-        """Somebody of these proportions who is seen for the second time; waits after each attempt."""
+        """A person of this shape found in two successive searches; yields after each attempt."""
         found: list[KeypointCandidate] = []
         for shadows in (False, True):
             for middle_m, who in self._candidates(shadows):
@@ -102,7 +102,7 @@ class KeypointInitialiser:
         return max(again, key=self._worth, default=None)
 
     def now(self, then: KeypointCandidate, walked_m: float) -> KeypointCandidate | None:
-        """Who was found in pictures of a while ago, in the newest ones; None: nobody is within walked_m [m] any more."""
+        """A person of older pictures refitted to the newest ones; None if none is within walked_m [m]."""
         near = [
             (away_m, middle_m, who)
             for middle_m, who in self._candidates(then.shadows)
@@ -126,8 +126,7 @@ class KeypointInitialiser:
         factors: Floats,
         information: Floats,
     ) -> KeypointCandidate | None:
-        """The pose of somebody about middle_m (3,) whose silhouettes are these; None where the network is far from
-        sure of its joints, or sees no trunk."""
+        """A pose about middle_m (3,) for these blobs; None if the network is unsure of the keypoints or sees no trunk."""
         p, fitter = self._params, self._silhouettes
         state = _upright_about(fitter, middle_m, factors, information)
         hips_m = state.root_m
@@ -164,7 +163,7 @@ class KeypointInitialiser:
         )
 
     def is_person(self, one: KeypointCandidate) -> bool:
-        """Whether joints and silhouettes agree about somebody on the floor."""
+        """True if keypoints and silhouettes agree on a person on the floor."""
         p = self._params
         low_m, high_m = p.lowest_m
         return (
@@ -176,7 +175,7 @@ class KeypointInitialiser:
         )
 
     def _candidates(self, shadows: bool) -> list[tuple[Floats, PersonCandidate]]:
-        """Where somebody's middle (3,) may be, and the pieces of the foreground there."""
+        """Candidate body centres (3,) with their blobs."""
         views = self._views
         blobs = {i: blobs_of(views.each[i].before, shadows, self._start) for i in views.present}
         if not blobs or any(not one for one in blobs.values()):

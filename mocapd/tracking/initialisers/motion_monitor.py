@@ -1,4 +1,4 @@
-"""Whether something as large as a person has moved for seconds while nobody is found."""
+"""Detects that a person-sized region has moved for seconds while no person is found."""
 
 from collections.abc import Mapping
 
@@ -12,14 +12,14 @@ from mocapd.vision.foreground_kernels import BEFORE
 
 
 class MotionMonitor:
-    """Compares the foreground of one look for a person with that of the look before."""
+    """Compares the foreground masks of successive searches."""
 
     def __init__(self, params: MotionMonitorParams) -> None:
         self._params = params
         self.reset()
 
     def reset(self) -> None:
-        """Somebody is found, or nothing was seen yet."""
+        """A person is found, or no picture has come yet."""
         self._last: Mapping[int, Bytes] = {}
         self._since_ns: int | None = None  # when it began to move
         self._moved_ns = 0  # when it moved last

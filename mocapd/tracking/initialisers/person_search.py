@@ -1,4 +1,4 @@
-"""Who stands before the background and is to be tracked: a person, and of several the nearest."""
+"""Searches the foreground for the person to track; of several people, the nearest."""
 
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -38,8 +38,8 @@ Found = tuple[Fit, tuple[str, ...]]  # somebody, and the cameras that show them
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Seen:
-    """Somebody before the background, or likely so, and as the cameras show them; shadows: with what may be one; low: as
-    the network's joints found them, who does not stand."""
+    """A person in the foreground, or a candidate, with its views. shadows: the blobs include possible shadows; low: the
+    keypoint candidate, for a person who does not stand upright."""
 
     who: PersonCandidate
     shadows: bool
@@ -51,7 +51,7 @@ _Likely = tuple[Fit, _Seen]
 
 
 class AttemptSchedule:
-    """When to look. Where a piece of a look takes long, others get as many pictures before the next as it cost them."""
+    """When to search. After a slow piece of a search, other work gets as much time as the piece took."""
 
     def __init__(self, params: StartParams) -> None:
         self._pause_ns = nanoseconds(params.pause_s)
@@ -68,7 +68,7 @@ class AttemptSchedule:
             self._next_ns = t_ns + min(took_ns, self._most_ns)
 
     def is_due(self, t_ns: int) -> bool:
-        """Of a frame set that came, in which nobody is known: whether it is time for a look, or for more of one."""
+        """True if this frame set should start or continue a search."""
         return t_ns >= self._next_ns
 
     def on_attempt(self, t_ns: int, to_the_end: bool) -> None:
@@ -79,8 +79,8 @@ class AttemptSchedule:
 
 
 class PersonSearch:
-    """Looks for somebody; on a slow machine a look goes on over some frame sets, as the webcams and the output cannot wait.
-    Remembers when it may look again, and where somebody was likely at the last look."""
+    """Searches for a person; on a slow machine one search runs over several frame sets, so that capture and output
+    continue. Keeps the schedule and the candidates of the last search."""
 
     def __init__(
         self,
@@ -104,7 +104,7 @@ class PersonSearch:
         self.reset()
 
     def reset(self) -> None:
-        """Look at once, and remember nobody."""
+        """Forgets all candidates and searches at once."""
         self.times = AttemptSchedule(self._params)
         self._likely_m: list[Floats] = []
         self._low.reset()
@@ -112,12 +112,12 @@ class PersonSearch:
         self.give_up()
 
     def give_up(self) -> None:
-        """The look under way is of no use any more."""
+        """Cancels the search in progress."""
         self._under_way: Generator[None, None, _Likely | None] | None = None
 
     def look(self, factors: Floats, information: Floats, t_ns: int) -> Found | None:
-        """Somebody of these proportions as the newest pictures show them, and the cameras that do; None: nobody, or not
-        known yet, or it is not time to look."""
+        """A person of this shape in the newest pictures, with the cameras that show it; None if none is confirmed yet or
+        no search is due."""
         if self._views.are_new:
             self.give_up()
             return None
@@ -147,7 +147,7 @@ class PersonSearch:
         return None
 
     def lost_reason(self, t_ns: int) -> LostReason | None:
-        """Why nobody is found, where that can be told."""
+        """Why no person is found, if known."""
         return self._motion.reason(t_ns)
 
     def _look(self, factors: Floats, information: Floats) -> Generator[None, None, _Likely | None]:
@@ -181,7 +181,7 @@ class PersonSearch:
         return fit, seen
 
     def _as_now(self, fit: Fit, then: _Seen) -> _Likely | None:
-        """Who was found in pictures of a while ago, in the newest ones; None: nobody is near there any more."""
+        """The person of older pictures refitted to the newest ones; None if no candidate is near."""
         p = self._params
         self._see()
         if then.low is not None:
@@ -208,7 +208,7 @@ class PersonSearch:
         self._views.take_uncovered()
 
     def _standing(self, shadows: bool) -> list[_Seen]:
-        """The likeliest people before the background; shadows: with what may be one."""
+        """The likeliest standing people in the foreground. shadows: include possible shadows."""
         p, views = self._params, self._views
         blobs = {i: blobs_of(views.each[i].before, shadows, p) for i in self._clear_cameras()}
         smaller = [one.image_scale for one in views.each]
@@ -217,8 +217,8 @@ class PersonSearch:
         return [_Seen(who, shadows, views_of(who, views.present)) for who in people]
 
     def _clear_cameras(self) -> list[int]:
-        """Without those whose picture hardly shows its background, as in another light or with somebody close to the lens:
-        a silhouette that fills the picture says nothing. All where fewer than two would be left."""
+        """Cameras without those whose picture hardly shows its background (changed light, or a person close to the lens):
+        such a silhouette carries no information. All cameras if fewer than two would remain."""
         views, most = self._views, self._params.most_share
         clear = [i for i in views.present if np.mean(views.each[i].before != BACKGROUND) <= most]
         return clear if len(clear) > 1 else list(views.present)

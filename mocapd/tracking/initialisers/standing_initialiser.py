@@ -1,4 +1,4 @@
-"""The first pose: a silhouette before the known background, as somebody who stands on the floor, whichever way."""
+"""The first pose of a standing person, from silhouettes in the foreground."""
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ class Blob:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PersonCandidate:
-    """Somebody of the known height at a place (3,) on the floor, as blobs of cameras, by index, show; error [work px^2]."""
+    """A person of the given stature at place_m (3,) on the floor, with a blob for each camera index; error [work px^2]."""
 
     place_m: Floats
     blobs: Mapping[int, Blob]
@@ -83,8 +83,8 @@ def person_candidates(
     stature_m: float,
     params: StartParams,
 ) -> list[PersonCandidate]:
-    """Where people of this height may stand, best first: for each blob of the first camera one, joined with the blobs of the
-    others that agree most."""
+    """Places where people of this stature may stand, best first: one for each blob of the first camera, matched with the
+    best blobs of the others."""
     if not blobs or any(not one for one in blobs.values()):
         return []
     first = next(iter(blobs))
@@ -137,8 +137,7 @@ def _misfit(blob: Blob, top: Floats, foot: Floats, height_px: float) -> float:
 
 
 def is_standing(fitter: Fitter, fit: Fit) -> bool:
-    """Whether a first pose has its hips about as high as somebody who stands, and its feet on the floor: a smaller person on
-    a television has not."""
+    """True if the hips are about as high as in the T-pose and the feet on the floor; excludes people on a television."""
     joints_m = fitter.joints(fit.state)[0]
     return bool(
         joints_m[0, 1] > _UPRIGHT * fitter.model.rest_m[0, 1]
@@ -164,7 +163,7 @@ def fit_first_pose(
     terms: Sequence[Term],
     params: StartParams,
 ) -> Generator[None, None, Fit]:
-    """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette; waits after each fit."""
+    """The best of several start poses, fitted to the blobs by a silhouette fitter; yields after each fit."""
     rest = fitter.shaper(factors).rest
 
     def fitted(yaw: float, arm: float) -> Fit:
@@ -198,13 +197,13 @@ def fit_to_blobs(
     terms: Sequence[Term],
     params: StartParams,
 ) -> Fit:
-    """A body fitted to somebody's blobs from this state on, by a fitter whose body is a silhouette."""
+    """A body fitted to the blobs from this state on, by a silhouette fitter."""
     return fitter.fit(state, views, params.loose_s, iterations, terms=terms)
 
 
 def _ways(who: PersonCandidate, eyes_m: Sequence[Floats]) -> tuple[list[float], list[float]]:
-    """Which way somebody may face [rad], 0 along +Z: the cameras, and past them on either side where these stand beside each
-    other, as they see one side alone; or any way where these stand all around."""
+    """Facing directions to try [rad], 0 along +Z: towards the cameras, and turned to either side for cameras with nearly
+    the same direction; four quarters if cameras stand all around."""
     away = np.array([eye - who.place_m for eye in eyes_m])[:, [0, 2]]
     away /= np.linalg.norm(away, axis=1, keepdims=True)
     middle = away.mean(axis=0)

@@ -1,4 +1,4 @@
-"""The numbers of the tracker without a shirt: its own decisions and those of its parts, with units and reasons."""
+"""Parameters of the clothes cue and its parts, with units and reasons."""
 
 from dataclasses import dataclass, field
 
@@ -20,7 +20,7 @@ from mocapd.vision.room_background import BackgroundParams
 
 @dataclass(frozen=True, slots=True)
 class StartParams:
-    """When somebody before the background is taken for a person, and how the first pose is found."""
+    """When a foreground blob counts as a person, and how the first pose is found."""
 
     least_px: int = 400  # of a blob, in work pixels
     least_height_px: int = 50
@@ -52,7 +52,7 @@ class StartParams:
 
 @dataclass(frozen=True, slots=True)
 class KeypointStartParams:
-    """When joints and a silhouette are somebody."""
+    """When keypoints and a silhouette count as a person."""
 
     least_height_px: int = 16  # of a piece: who lies is low [work px]
     step_m: float = 0.1  # from one distance that is tried to the next
@@ -78,7 +78,7 @@ class KeypointStartParams:
 
 @dataclass(frozen=True, slots=True)
 class MotionMonitorParams:
-    """When something that moves must be somebody who is not found."""
+    """When motion must come from a person who is not found."""
 
     least_px: int = 500  # of all that is before the background of a camera, in work pixels
     most_share: float = 0.6  # of the picture: more is another light
@@ -97,7 +97,7 @@ class MotionMonitorParams:
 
 @dataclass(frozen=True, slots=True)
 class ClothesParams:
-    """Parameters of the tracker without a shirt."""
+    """Parameters of the clothes cue."""
 
     fit: FitParams = field(default_factory=lambda: FitParams(iterations=6))
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)

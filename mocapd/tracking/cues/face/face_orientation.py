@@ -1,7 +1,7 @@
-"""Which way somebody faces, told by the face: from the front and from behind two cameras side by side see the same outline.
+"""Front-back test by face detection: from front and back two cameras side by side see the same outline.
 
-A frontal face that shows where the tracked head is thought to face away speaks for a body that is turned round. One that does
-not show tells little: it looks down, a hand is before it, or it is one that the cascade does not know.
+A frontal face where the tracked head should face away is evidence for a flipped body. A missing face is weak evidence:
+the head may look down, be covered, or defeat the cascade.
 """
 
 from collections.abc import Sequence
@@ -42,7 +42,7 @@ class FaceOrientationParams:
 
 
 class FaceOrientation:
-    """The odds that the tracked body is turned round, which are all of its state."""
+    """Log-odds that the tracked body is flipped; no other state."""
 
     def __init__(
         self, cascade: CascadeArrays, stature_m: float, params: FaceOrientationParams
@@ -52,12 +52,12 @@ class FaceOrientation:
         self.reset()
 
     def reset(self) -> None:
-        """The body faces where it is thought to."""
+        """Clears the evidence."""
         self._odds = 0.0
 
     @property
     def is_reversed(self) -> bool:
-        """Whether the body very likely faces the other way."""
+        """True if the body very likely faces the other way."""
         return self._odds > self._params.sure
 
     def rehearse(self) -> None:

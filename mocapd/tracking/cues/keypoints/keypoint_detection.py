@@ -1,4 +1,4 @@
-"""What each camera sees of the predicted body's joints: a small picture about it, looked at by the network of heatmaps."""
+"""Keypoint detection: runs the heatmap network of each camera on a crop about the predicted body."""
 
 from collections.abc import Callable, Iterable
 
@@ -33,12 +33,12 @@ _GREY = (127.5, 127.5, 127.5)
 
 
 def no_detection(_camera: int) -> JointRays | None:
-    """No camera is looked at."""
+    """Detects nothing, for frame sets without keypoint detection."""
     return None
 
 
 class KeypointDetectors:
-    """One network for each camera."""
+    """A network for each camera."""
 
     def __init__(self, count: int, stature_m: float, params: KeypointDetectionParams) -> None:
         """count: of cameras."""
@@ -49,7 +49,7 @@ class KeypointDetectors:
     def detector(
         self, fitter: Fitter, predicted: MotionState, cameras: CameraViews
     ) -> Callable[[int], JointRays | None]:
-        """What looks at a camera by its index for the joints of a body that is expected here."""
+        """Returns a function that detects the keypoints of the predicted body in the camera of an index."""
         if not self._networks:
             return no_detection
         here_m, _ = fitter.joints(predicted)
@@ -63,7 +63,7 @@ class KeypointDetectors:
         return detect
 
     def term(self, model: BodyModel, rays: Iterable[JointRays | None]) -> tuple[JointTerm, ...]:
-        """What the cameras saw as a term of the fit; none where they do not count or nothing was looked at."""
+        """The detections as a term of the fit; empty without detections."""
         found = [camera_rays for camera_rays in rays if camera_rays is not None]
         return (JointTerm(model, found, self._params.term),) if found else ()
 

@@ -1,4 +1,4 @@
-"""Find the wearer without a previous pose: locate the colours, ask the pose database, fit, judge."""
+"""Finds the wearer without a previous pose: colour detection, pose database look-up, fit, check."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ _LOOSE_S = 0.4  # a hypothesis is held as loosely as a prediction over this time
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShirtSighting:
-    """A shirt in one camera: where, and the poses that look most like it, with their map distances."""
+    """A shirt detection in one camera with its nearest poses of the database and their map distances."""
 
     index: int  # of the camera
     candidate: ShirtCandidate
@@ -37,7 +37,7 @@ class ShirtSighting:
 def detect_shirt(
     index: int, segmenter: CameraSegmenter, database: PoseDatabase, neighbours: int
 ) -> ShirtSighting | None:
-    """Look for the shirt in one camera's present picture; neighbours: poses asked for."""
+    """Detects the shirt in one camera's present picture; neighbours: number of poses to look up."""
     candidate = segmenter.find(WINDOWS)
     if candidate is None:
         return None
