@@ -152,7 +152,7 @@ class ScriptedShirt(_Scripted):
     def follow(self, known: TrackState, predicted: MotionState, *_: object) -> ShirtEstimate | None:
         return self._as_shirt(self.found_near(predicted))
 
-    def begin(self, body: MotionState, *_: object) -> ShirtEstimate | None:
+    def start_from(self, body: MotionState, *_: object) -> ShirtEstimate | None:
         self.looked_ns.append(self.frames.t_ns)
         return self._as_shirt(self.found_near(body))
 
@@ -205,12 +205,12 @@ class ScriptedClothes(_Scripted):
     def observe(self, predicted: MotionState, *_: object) -> ClothesObservation:
         return ClothesObservation(predicted, [], ())
 
-    def whole(
+    def fit_whole_body(
         self, known: TrackState, seen: ClothesObservation, *_: object
     ) -> ClothesEstimate | None:
         return self._as_clothes(self.found_near(seen.drawn))
 
-    def below(self, known: TrackState, start: MotionState, *_: object) -> ClothesEstimate | None:
+    def fit_lower_body(self, known: TrackState, start: MotionState, *_: object) -> ClothesEstimate | None:
         seen = self.found_near(start)
         return self._as_clothes(
             None if seen is None else join_bodies(seen, upper_body_state(start, UPPER))
@@ -219,7 +219,7 @@ class ScriptedClothes(_Scripted):
     def search(self, _: BodyShapeEstimate, _t_ns: int) -> ClothesEstimate | None:
         return self._as_clothes(self.found_near(None))
 
-    def begin(self, there: MotionState, _: FrameSet) -> ClothesEstimate | None:
+    def start_from(self, there: MotionState, _: FrameSet) -> ClothesEstimate | None:
         return self._as_clothes(self.found_near(there))
 
     def lost_reason(self, _: int) -> LostReason | None:
