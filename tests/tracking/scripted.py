@@ -210,7 +210,9 @@ class ScriptedClothes(_Scripted):
     ) -> ClothesEstimate | None:
         return self._as_clothes(self.found_near(seen.drawn))
 
-    def fit_lower_body(self, known: TrackState, start: MotionState, *_: object) -> ClothesEstimate | None:
+    def fit_lower_body(
+        self, known: TrackState, start: MotionState, *_: object
+    ) -> ClothesEstimate | None:
         seen = self.found_near(start)
         return self._as_clothes(
             None if seen is None else join_bodies(seen, upper_body_state(start, UPPER))
