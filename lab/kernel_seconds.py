@@ -67,7 +67,7 @@ def _tracker(stage: str, cache: Path) -> None:
     from mocapd.pipeline.rehearsal import rehearse
     from mocapd.session.worker_thread import each_camera
     from mocapd.tracking.build import build_body_tracker
-    from mocapd.tracking.known import known_shape
+    from mocapd.tracking.tracker_inputs import wearer_shape
 
     name = TRACKERS[stage]
     known = from_origin(open_film(f"sim:{SCENARIO}", _scenario(), cache, _quiet, None))
@@ -77,7 +77,7 @@ def _tracker(stage: str, cache: Path) -> None:
     )
     shirt = known.shirt or ShirtColours()
     pictures = {camera: one.pixels for camera, one in shirt.white_balance.items()}
-    rehearse(tracker, known_shape(known), known.rig, pictures, _quiet)
+    rehearse(tracker, wearer_shape(known), known.rig, pictures, _quiet)
 
 
 STAGES: Mapping[str, Callable[[Path], object]] = {

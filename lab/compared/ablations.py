@@ -42,13 +42,13 @@ def _no_leg_search(params: ClothesParams) -> ClothesParams:
 
 
 def _no_faces(params: ClothesParams) -> ClothesParams:
-    facing = replace(params.flip.facing, sure=float("inf"))
-    return replace(params, flip=replace(params.flip, facing=facing))
+    face = replace(params.flip.face, sure=float("inf"))
+    return replace(params, flip=replace(params.flip, face=face))
 
 
 def _no_turns(params: ClothesParams) -> ClothesParams:
-    turning = replace(params.flip.turning, sure=float("inf"))
-    return replace(params, flip=replace(params.flip, turning=turning))
+    flip_test = replace(params.flip.flip_test, sure=float("inf"))
+    return replace(params, flip=replace(params.flip, flip_test=flip_test))
 
 
 def _no_shadows(params: ClothesParams) -> ClothesParams:

@@ -15,7 +15,7 @@ from mocapd.session.worker_thread import each_camera
 from mocapd.trackers.registry import Resources, build
 from mocapd.tracking.build import ProfileParams
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,7 +29,7 @@ class Rival:
 def ready_rival(rival: Rival, resources: Resources, calibration: Calibration) -> ReadyTracker:
     """The rival and the wearer's shape for its first step. Raises ConfigError naming what it lacks."""
     own = replace(resources, params={rival.tracker: rival.params}, each=each_camera())
-    return ReadyTracker(build(rival.tracker, calibration, own), known_shape(calibration))
+    return ReadyTracker(build(rival.tracker, calibration, own), wearer_shape(calibration))
 
 
 # By tracker and label.

@@ -16,7 +16,7 @@ from mocapd.capture.capture_folder import frame_sets
 from mocapd.evaluate.capture_eval import BuildTracker
 from mocapd.evaluate.recovery import recovery
 from mocapd.session.offline import RecordedTrack, track_all
-from mocapd.tracking.base import Probe, Track, Tracker, unprobed
+from mocapd.tracking.base import Probe, Track, Tracker, no_probe
 from mocapd.types import BodyState, FrameSet
 
 STEP_M = 1e-4  # between the statures of two runs
@@ -53,7 +53,7 @@ class _Timed:
 
     def __init__(self, tracker: Tracker) -> None:
         self.name = tracker.name
-        self.probe: Probe = unprobed
+        self.probe: Probe = no_probe
         self._tracker = tracker
         self.step_ms: list[float] = []
         self.cpu_ms: list[float] = []

@@ -18,7 +18,7 @@ from mocapd.published.rao_hodges.annealing import AnnealingParams
 from mocapd.published.rao_hodges.build import build_rao_hodges_tracker
 from mocapd.published.rao_hodges.params import Params
 from mocapd.session.tracker_setup import ReadyTracker
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 
 _STATURE_M = 1.75  # of captures that do not say
 _PARAMS: Mapping[str, Params] = MappingProxyType(
@@ -43,7 +43,7 @@ def captures(
         for folder in folders:
 
             def ready(known: Calibration, params: Params = params) -> ReadyTracker:
-                return ReadyTracker(build_rao_hodges_tracker(known, params), known_shape(known))
+                return ReadyTracker(build_rao_hodges_tracker(known, params), wearer_shape(known))
 
             found = evaluate(open_case(folder), ready, stature_m=_STATURE_M, joints="full").score
             sys.stdout.write(

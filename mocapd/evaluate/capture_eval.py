@@ -18,7 +18,7 @@ from mocapd.evaluate.truth import Truth, load_truth
 from mocapd.session.capture_checks import CheckedCapture, check_capture
 from mocapd.session.offline import RecordedTrack, track_all
 from mocapd.session.tracker_setup import ReadyTracker
-from mocapd.tracking.base import Probe, Track, Tracker, unprobed
+from mocapd.tracking.base import Probe, Track, Tracker, no_probe
 from mocapd.types import BodyState, Bytes, FrameSet
 
 BuildTracker = Callable[[Calibration], ReadyTracker]
@@ -67,7 +67,7 @@ class _TimedTracker:
 
     def __init__(self, tracker: Tracker, keep: Container[int]) -> None:
         self.name = tracker.name
-        self.probe: Probe = unprobed
+        self.probe: Probe = no_probe
         self._tracker, self._keep = tracker, keep
         self.step_ms: list[float] = []
         self.evidence: dict[tuple[str, int], Evidence] = {}

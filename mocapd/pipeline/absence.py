@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.clock import NS_PER_S, nanoseconds, seconds
-from mocapd.tracking.tracking_state import faded, grown
+from mocapd.tracking.tracking_state import confidence_fade, grow_uncertainty
 from mocapd.types import BodyState, Tracking
 
 COASTING_EVERY_NS = NS_PER_S // 10
@@ -81,9 +81,9 @@ class Absence:
             last,
             t_ns=t_ns,
             tracking=Tracking.COASTING,
-            confidence=last.confidence * faded(away_s),
+            confidence=last.confidence * confidence_fade(away_s),
             cameras=(),
-            uncertainty_m=grown(last.uncertainty_m, away_s),
+            uncertainty_m=grow_uncertainty(last.uncertainty_m, away_s),
         )
 
     def _timeout_ns(self) -> int:

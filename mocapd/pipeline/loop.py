@@ -16,7 +16,7 @@ from mocapd.pipeline.other_programs import OtherPrograms
 from mocapd.pipeline.slowness import SlownessWatch
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.tracking.base import EffortTracker, Track, Tracker
-from mocapd.tracking.doubt import doubted
+from mocapd.tracking.view_disagreement import lower_confidence
 from mocapd.types import FrameSet
 
 OnDeath = Callable[[BaseException], None]
@@ -116,7 +116,7 @@ class PipelineLoop:
         if track.shape is not self._shape:
             self._shape = track.shape
             self._skeleton = self._smoother.skeleton = skeleton_of(track.shape)
-        body = doubted(self._smoother.step(track.body), self._off_m())
+        body = lower_confidence(self._smoother.step(track.body), self._off_m())
         if self._absence is not None:
             body = self._absence.came(body, monotonic_ns())
         self._bodies.put(BodySample(replace(track, body=body), self._skeleton, frames))

@@ -13,8 +13,8 @@ from mocapd.clock import seconds
 from mocapd.errors import ConfigError
 from mocapd.output_file import FileKind, OutputFile
 from mocapd.tracking.base import RoomLearner, Tracker
-from mocapd.tracking.doubt import doubted
 from mocapd.tracking.lost_reason import LostReason
+from mocapd.tracking.view_disagreement import lower_confidence
 from mocapd.types import Floats, FrameSet
 
 SCHEMA = "mocapd.Track.v1"
@@ -73,7 +73,7 @@ def track_all(
     unrecognised = 0
     for done, frame_set in enumerate(frames, start=1):
         track = tracker.step(frame_set, shape)
-        body, shape = doubted(track.body, off_m), track.shape
+        body, shape = lower_confidence(track.body, off_m), track.shape
         unrecognised += track.lost_reason is LostReason.UNRECOGNISED
         if body.pose is not None and body.joints_m is not None:
             times.append(seconds(body.t_ns))

@@ -16,7 +16,7 @@ from mocapd.session.worker_thread import each_camera
 from mocapd.trackers import registry
 from mocapd.trackers.registry import Resources, build
 from mocapd.tracking.base import Tracker
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.tracking.tracking_state import TrackingStateParams
 
 Progress = Callable[[str, int, int], None]  # task, parts done, parts in all
@@ -49,7 +49,7 @@ def ready_tracker(
     rehearsal: called with (steps done, steps in all) during a warm-up on the calibration's pictures, which spares live
     frames the delay; None for recordings. watched: wraps the tracker before the warm-up.
     """
-    shape = known_shape(calibration)
+    shape = wearer_shape(calibration)
     if rehearsal is not None:
         resources = replace(resources, now_ns=monotonic_ns)
     with _with_pool(resources) as pooled:

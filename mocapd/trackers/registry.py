@@ -14,7 +14,7 @@ from mocapd.each import Each, in_turn
 from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
-from mocapd.tracking.base import Tracker, no_time_passes
+from mocapd.tracking.base import Tracker, frozen_clock
 from mocapd.tracking.profiles import PROFILES
 from mocapd.tracking.tracking_state import TrackingStateParams
 
@@ -49,7 +49,7 @@ class Resources:
     tracking: TrackingStateParams | None = None
     params: Mapping[str, Any] = field(default_factory=dict)
     each: Each = in_turn
-    now_ns: Callable[[], int] = no_time_passes
+    now_ns: Callable[[], int] = frozen_clock
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,1 +1,1 @@
-"""One body from many cues: the step machine, its state, what it sees by, and whom it believes."""
+"""The body tracker: its state machine, cues, initialisers, hypotheses, cue trust and pose filter."""

@@ -12,19 +12,18 @@ from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, Bytes, FrameSet, Tracking
 
-Probe = Callable[[str], None]  # hears that the stage of this name has ended
+Probe = Callable[[str], None]  # called with the name of a stage when it ends
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Track:
-    """What a tracker says of one frame set.
+    """A tracker's result for one frame set.
 
-    shape: the wearer's as known now, that of the step or what was learned beyond it; quality: how much
-    of the evidence the body explains, 0..1, 0 when lost; lost_reason: why nobody is tracked, where the tracker can tell.
+    shape: the body shape of the step, or an update learned beyond it; quality: share of the evidence that the body
+    explains, 0..1, 0 when lost; lost_reason: set if the tracker knows why it tracks no person.
 
-    evidence[camera] is an id map (h,w) uint8 over the region roi_px[camera] = x0, y0, x1, y1 of
-    the frame, at the tracker's own resolution; 0 is nothing, 1.. are the tracker's own classes
-    (shirt trackers: colour ids).
+    evidence[camera] is an id map (h,w) uint8 over the region roi_px[camera] = x0, y0, x1, y1 of the frame, at the
+    tracker's own resolution; 0 is background, 1.. are the tracker's own classes (shirt trackers: colour ids).
     """
 
     body: BodyState
@@ -45,56 +44,55 @@ class Tracker(Protocol):
     """
 
     name: str
-    probe: Probe  # called at the end of each stage of a step; `unprobed` for nobody
+    probe: Probe  # called at the end of each stage of a step; `no_probe` by default
 
     def reset(self, near: BodyState | None = None) -> None:
-        """Forget everything learned since construction. near: begin from this body, as another tracker
-        knew it; it is believed when the next frames confirm it."""
+        """Forgets everything learned since construction. near: a start pose from another tracker; used if the next frames
+        confirm it."""
         ...
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
-        """Track one frame set of a wearer of this shape; times never decrease from call to call.
+        """Tracks one frame set of a wearer with this shape. Times never decrease from call to call.
 
-        Whoever steps it owns the shape: to let the tracker learn, hand the shape of the last track to
-        the next step. Its stature is the one that the tracker was built for.
+        The caller owns the shape: to let the tracker learn, pass the shape of the last track to the next step. Its
+        stature must be the one that the tracker was built for.
         """
         ...
 
 
 @runtime_checkable
 class RoomLearner(Tracker, Protocol):
-    """A tracker that has to know the empty room, and can learn it from a recording that never shows it empty."""
+    """A tracker with a background model that it can learn from a recording, even one that never shows the empty room."""
 
     def learn_room(self, frames: Iterable[FrameSet]) -> None:
-        """Before the first step: what stays as it is in these frame sets of one recording is the room. `reset` forgets
-        it."""
+        """Learns the static background of one recording's frame sets. Call before the first step; `reset` forgets it."""
         ...
 
 
 @runtime_checkable
 class EffortTracker(Tracker, Protocol):
-    """A tracker that can leave out work where a machine is too slow; see `tracking.effort`."""
+    """A tracker that can skip optional work on a slow machine; see `tracking.effort`."""
 
     def set_effort(self, effort: Effort) -> None:
-        """From the next step on; `full` at first. `reset` leaves it as it is."""
+        """Takes effect at the next step; initially `full`. `reset` does not change it."""
         ...
 
 
-def unprobed(stage: str) -> None:
-    """Nobody measures."""
+def no_probe(stage: str) -> None:
+    """The default probe: records nothing."""
 
 
-def no_time_passes() -> int:
-    """The clock of recordings, which wait as long as a step takes [ns]."""
+def frozen_clock() -> int:
+    """The clock for recordings: no time passes during a step [ns]."""
     return 0
 
 
 def lost_body(t_ns: int, tracker: str) -> BodyState:
-    """Nobody is known."""
+    """The body state while no person is tracked."""
     return BodyState(t_ns, Tracking.LOST, tracker, None, None, np.zeros(N_JOINTS))
 
 
 def require_stature(shape: BodyShape, stature_m: float) -> None:
-    """Raises ValueError when a tracker that was built for this stature [m] is stepped with another's shape."""
+    """Raises ValueError if the shape's stature differs from the one [m] that the tracker was built for."""
     if shape.stature_m != stature_m:
         raise ValueError(f"a shape of {shape.stature_m} m for a tracker of {stature_m} m")

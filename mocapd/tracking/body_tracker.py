@@ -1,4 +1,4 @@
-"""The step machine: predict, observe, solve, judge the cues, learn, and publish one body."""
+"""The per-frame state machine: predict, observe, solve, update cue trust, learn, publish one body."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -11,44 +11,48 @@ from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
 from mocapd.errors import ConfigError
 from mocapd.fit.motion_state import MotionState, predict_state, shape_prior, update_shape
-from mocapd.tracking.base import Probe, Track, lost_body, require_stature, unprobed
+from mocapd.tracking.base import Probe, Track, lost_body, no_probe, require_stature
 from mocapd.tracking.cue_trust import CLOTHES_TRUST, SHIRT_TRUST, CueTrust
 from mocapd.tracking.cues.base import Cue
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
-from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound, Observed
-from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
-from mocapd.tracking.cues.shirt.shirt_watch import ShirtWatch
+from mocapd.tracking.cues.clothes.clothes_solver import ClothesEstimate, ClothesObservation
+from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtEstimate
+from mocapd.tracking.cues.shirt.shirt_locator import ShirtLocator
 from mocapd.tracking.effort import WORK, Effort
-from mocapd.tracking.initialisers.base import Begun, Initialiser
-from mocapd.tracking.initialisers.given_body import GivenBody
-from mocapd.tracking.initialisers.person_before_background import PersonBeforeBackground
+from mocapd.tracking.initialisers.base import Initialiser, InitialPose
+from mocapd.tracking.initialisers.foreground_person import ForegroundPerson
+from mocapd.tracking.initialisers.handed_over_body import HandedOverBody
 from mocapd.tracking.initialisers.shirt_pose import ShirtPose
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.pose_filter import PoseFilter
-from mocapd.tracking.published_body import CueFindings, published_body
+from mocapd.tracking.published_body import CueEstimates, publish_body
 from mocapd.tracking.ticks import TickClock
-from mocapd.tracking.track_state import Proportions, TrackState
+from mocapd.tracking.track_state import BodyShapeEstimate, TrackState
 from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams
-from mocapd.tracking.trunk_and_legs import joined, with_still_legs, with_upper
+from mocapd.tracking.trunk_and_legs import freeze_legs, join_bodies, replace_upper_body
 from mocapd.types import BodyState, FrameSet, Rig, Tracking
 
-_TOO_OLD_S = 1.0  # a pose is not predicted from any longer; a busy machine may skip many frames
+_MAX_STATE_AGE_S = 1.0  # an older state predicts nothing; a busy machine may skip many frames
 
 
 @dataclass(frozen=True, slots=True)
 class BodyTrackerParams:
-    """Times are of the frames, never counted in them [s]."""
+    """Durations are seconds of frame time."""
 
-    work_width_px: int = 320  # of pictures averaged down, about
-    damping: float = 0.6  # of the motion that a prediction goes on with
-    arrive_s: float = 0.15  # clothes alone begin no sooner where the shirt may: first looks at who walks in are the worst
-    overrule_s: float = 2.0  # the shirt seen elsewhere for so long is right
-    legs_last_s: float = 0.5  # legs that are not seen are published for so long
+    work_width_px: int = 320  # approximate width of the downscaled pictures
+    damping: float = 0.6  # share of its velocity that a prediction keeps
+    arrive_s: float = 0.15  # a profile with a shirt publishes clothes-only tracks no younger: early fits are the worst
+    overrule_s: float = (
+        2.0  # a shirt tracked elsewhere for this long replaces the body of the clothes
+    )
+    legs_last_s: float = 0.5  # unobserved legs are published for this long
 
 
 class BodyTracker:
-    """A person whom one camera or more see in the shirt, or two and more in any clothes; see `tracking.base.Tracker` for the
-    promises. A body says which cues carry it: `shirt`, `clothes`, or both."""
+    """Tracks one person with the shirt (one camera or more) or any clothes (two or more); see `tracking.base.Tracker`.
+
+    `BodyState.tracker` names the cues that carry the body: `shirt`, `clothes` or both.
+    """
 
     def __init__(
         self,
@@ -61,23 +65,25 @@ class BodyTracker:
         tracking: TrackingStateParams | None = None,
         each: Each = in_turn,
     ) -> None:
-        """name: of the profile; one of the cues at least; each: of the cameras."""
+        """name: of the profile; at least one cue is required; each: runs work for each camera."""
         self.name = name
         self.params = p = params if params is not None else BodyTrackerParams()
-        self.probe: Probe = unprobed
+        self.probe: Probe = no_probe
         self._stature_m, self._skeleton = stature_m, standard_skeleton(stature_m)
         self.rig, self._shirt, self._clothes = rig, shirt, clothes
         self._pictures = Pictures(rig.cameras, p.work_width_px, each)
         self._model = clothes.model if clothes else build_model(stature_m, full_body())
-        self._watch = ShirtWatch(shirt, self._model, p.damping) if shirt is not None else None
+        self._locator = ShirtLocator(shirt, self._model, p.damping) if shirt is not None else None
         self._tracking, self._filter = TrackingState(tracking), PoseFilter()
-        self._cues: tuple[Cue, ...] = tuple(one for one in (clothes, shirt) if one is not None)
-        self._given = GivenBody(self._model, self._skeleton, shirt, clothes, _TOO_OLD_S)
-        self._initialisers: list[Initialiser] = [self._given]
-        if self._watch is not None:
-            self._initialisers.append(ShirtPose(self._watch))
+        self._cues: tuple[Cue, ...] = tuple(cue for cue in (clothes, shirt) if cue is not None)
+        self._handed_over = HandedOverBody(
+            self._model, self._skeleton, shirt, clothes, _MAX_STATE_AGE_S
+        )
+        self._initialisers: list[Initialiser] = [self._handed_over]
+        if self._locator is not None:
+            self._initialisers.append(ShirtPose(self._locator))
         if clothes is not None:
-            self._initialisers.append(PersonBeforeBackground(clothes))
+            self._initialisers.append(ForegroundPerson(clothes))
         self._filter.rehearse(self._skeleton)
         for cue in self._cues:
             cue.rehearse()
@@ -85,18 +91,19 @@ class BodyTracker:
 
     def reset(self, near: BodyState | None = None) -> None:
         """See Tracker."""
-        for one in (*self._cues, self._watch, self._filter):
-            if one is not None:
-                one.reset()
-        self._given.give(near)
-        self._tracking.reset(None if self._given.body is None else self._given.body.t_ns)
-        self._known: TrackState | None = None
+        for part in (*self._cues, self._locator, self._filter):
+            if part is not None:
+                part.reset()
+        self._handed_over.set_body(near)
+        body = self._handed_over.body
+        self._tracking.reset(None if body is None else body.t_ns)
+        self._state: TrackState | None = None
         self._shirt_trust, self._clothes_trust = CueTrust(), CueTrust()
-        self._begun_ns, self._ticks = 0, TickClock()
+        self._track_start_ns, self._ticks = 0, TickClock()
 
     @property
     def clothes(self) -> ClothesCue | None:
-        """The cue of any clothes, where the profile has it."""
+        """The clothes cue, if the profile has it."""
         return self._clothes
 
     def set_effort(self, effort: Effort) -> None:
@@ -105,7 +112,7 @@ class BodyTracker:
             cue.work = WORK[effort]
 
     def learn_room(self, frames: Iterable[FrameSet]) -> None:
-        """See `RoomLearner`. Raises ConfigError as `step` does, and where no cue looks at clothes."""
+        """See `RoomLearner`. Raises ConfigError as `step` does, and for a profile without clothes."""
         if self._clothes is None:
             raise ConfigError(
                 f"the tracker {self.name!r} learns no room", "--room", "leave it out, or add --tracker markerless"
@@ -116,198 +123,204 @@ class BodyTracker:
         """See Tracker. Raises ConfigError when a frame's size is not its calibration's."""
         require_stature(shape, self._stature_m)
         self._ticks.pass_to(frames.t_ns)
-        present = self._look(frames)
+        present = self._load(frames)
         self.probe("picture")
-        wearer = Proportions(*shape_prior(shape, full_body()), shape.taught_s)
-        now, found = self._recent(frames.t_ns), CueFindings()
+        wearer = BodyShapeEstimate(*shape_prior(shape, full_body()), shape.taught_s)
+        state, estimates = self._recent_state(frames.t_ns), CueEstimates()
         if present:
-            if now is not None:
-                now, found = self._follow(now.of(wearer), wearer, present, frames)
+            if state is not None:
+                state, estimates = self._track(state.with_shape(wearer), wearer, present, frames)
             else:
-                now, found = self._begin(wearer, present, frames)
-        is_seen = now is not None and now.t_ns == frames.t_ns
+                state, estimates = self._initialise(wearer, present, frames)
+        is_observed = state is not None and state.t_ns == frames.t_ns
         tracking = self._tracking.step(
-            frames.t_ns, is_seen and not self._is_arriving(now, frames.t_ns)
+            frames.t_ns, is_observed and not self._is_too_young(state, frames.t_ns)
         )
-        if tracking is Tracking.LOST and not is_seen:
-            now = None
-        self._known = now
-        self._learn(found, present)
+        if tracking is Tracking.LOST and not is_observed:
+            state = None
+        self._state = state
+        self._learn(estimates, present)
         self.probe("learn")
-        if now is not None and self._shirt is not None:
-            n = self._shirt.model.n_shape
+        if state is not None and self._shirt is not None:
+            n, motion = self._shirt.model.n_shape, state.motion
             shape = update_shape(
-                shape, now.motion.factors[:n], now.motion.information[:n, :n], now.taught_s
+                shape, motion.factors[:n], motion.information[:n, :n], state.taught_s
             )
-        if tracking is Tracking.LOST or now is None:
+        if tracking is Tracking.LOST or state is None:
             self._filter.reset()
             reason = self._clothes.lost_reason(frames.t_ns) if self._clothes is not None else None
             return Track(lost_body(frames.t_ns, self.name), shape, lost_reason=reason)
-        motion = now.motion
-        if not is_seen:
-            motion = predict_state(
-                self._model, motion, self._coasts_s(now, frames.t_ns), self.params.damping
-            )
-        track = published_body(
-            now, motion, found, self._shirt, self._clothes, self._filter, frames.t_ns, tracking, shape
+        motion = state.motion
+        if not is_observed:
+            coast_s = _coast_s(state, frames.t_ns)
+            motion = predict_state(self._model, motion, coast_s, self.params.damping)
+        track = publish_body(
+            state, motion, estimates, self._shirt, self._clothes, self._filter, frames.t_ns, tracking, shape
         )  # fmt: skip
         self.probe("publish")
         return track
 
     # --- stages ---
 
-    def _look(self, frames: FrameSet) -> dict[int, float]:
-        """Each seeing camera's own time after the frame set's [s], by index."""
-        present = self._pictures.look(frames)
+    def _load(self, frames: FrameSet) -> dict[int, float]:
+        """Passes the pictures to the cues. Returns each present camera's time offset from the frame set [s], by index."""
+        present = self._pictures.load(frames)
         for cue in self._cues:
             cue.take(self._pictures, self._ticks.now)
         return present
 
-    def _recent(self, t_ns: int) -> TrackState | None:
-        """Who is known, unless that is too old to predict from."""
-        known = self._known
-        return None if known is None or t_ns - known.t_ns > nanoseconds(_TOO_OLD_S) else known
+    def _recent_state(self, t_ns: int) -> TrackState | None:
+        """The track state, unless it is too old to predict from."""
+        state, max_age_ns = self._state, nanoseconds(_MAX_STATE_AGE_S)
+        return None if state is None or t_ns - state.t_ns > max_age_ns else state
 
-    def _follow(
-        self, known: TrackState, wearer: Proportions, present: dict[int, float], frames: FrameSet
-    ) -> tuple[TrackState, CueFindings]:
-        """One frame of tracking; one without evidence leaves `known` at its old time."""
-        t_ns, clothes, watch = frames.t_ns, self._clothes, self._watch
-        dt_s = max(seconds(t_ns - known.t_ns), 1e-3)
-        predicted = predict_state(self._model, known.motion, dt_s, self.params.damping)
-        seen = trunk = whole = other = None
+    def _track(
+        self,
+        state: TrackState,
+        wearer: BodyShapeEstimate,
+        present: dict[int, float],
+        frames: FrameSet,
+    ) -> tuple[TrackState, CueEstimates]:
+        """The state after this frame set. Without evidence it is the old state, with its old time."""
+        t_ns, clothes, locator = frames.t_ns, self._clothes, self._locator
+        dt_s = max(seconds(t_ns - state.t_ns), 1e-3)
+        predicted = predict_state(self._model, state.motion, dt_s, self.params.damping)
+        observed = trunk = whole = separate = None
         if clothes is not None:
-            seen = clothes.observe(predicted, t_ns, known.legs_since_ns, known.by_shirt)
+            observed = clothes.observe(predicted, t_ns, state.legs_since_ns, state.by_shirt)
             self.probe("clothes.observe")
-        if watch is not None:
-            trunk = watch.see(
-                known,
+        if locator is not None:
+            trunk = locator.locate(
+                state,
                 predicted,
                 wearer,
                 dt_s,
                 present,
                 frames,
-                self._ticks.now.turn,
-                self._shirt_trust.believed,
+                self._ticks.now.frame_index,
+                self._shirt_trust.trusted,
                 self.probe,
             )
-            if watch.has_looked:
+            if locator.has_searched:
                 quality = None if trunk is None else trunk.fit.explained
-                self._shirt_trust = self._shirt_trust.judged(
+                self._shirt_trust = self._shirt_trust.update(
                     t_ns, quality, len(present), SHIRT_TRUST
                 )
-            other = watch.elsewhere
-        if trunk is not None and watch is not None and self._carries(known, t_ns):
-            if other is None:
-                return self._carried(known, predicted, trunk, seen, dt_s, frames)
-            watch.reset()
-            return self._carried(other, other.motion, trunk, None, dt_s, frames)
-        if clothes is not None and seen is not None:
-            whole = clothes.whole(known, seen, dt_s, frames, self.probe)
-        self._judge_clothes(whole, t_ns, len(present))
-        trunk = None if other is not None else trunk
+            separate = locator.separate_track
+        if trunk is not None and locator is not None and self._shirt_carries(state, t_ns):
+            if separate is None:
+                return self._solve_by_shirt(state, predicted, trunk, observed, dt_s, frames)
+            locator.reset()
+            return self._solve_by_shirt(separate, separate.motion, trunk, None, dt_s, frames)
+        if clothes is not None and observed is not None:
+            whole = clothes.fit_whole_body(state, observed, dt_s, frames, self.probe)
+        self._update_clothes_trust(whole, t_ns, len(present))
+        trunk = None if separate is not None else trunk
         if whole is None and trunk is not None:
-            return self._carried(known, predicted, trunk, seen, dt_s, frames)
+            return self._solve_by_shirt(state, predicted, trunk, observed, dt_s, frames)
         if whole is None:
-            return known, CueFindings()
-        since_ns = t_ns if known.legs_since_ns is None else known.legs_since_ns
-        state = TrackState(
+            return state, CueEstimates()
+        since_ns = t_ns if state.legs_since_ns is None else state.legs_since_ns
+        updated = TrackState(
             t_ns, whole.motion, whole.cameras, trunk.fit if trunk else None, whole.fit, t_ns, since_ns, whole.changed,
-            known.taught_s,
+            state.taught_s,
         )  # fmt: skip
-        return state, CueFindings(trunk, whole)
+        return updated, CueEstimates(trunk, whole)
 
-    def _carries(self, known: TrackState, t_ns: int) -> bool:
-        """Whether the shirt, which is seen, carries trunk and arms in this frame."""
+    def _shirt_carries(self, state: TrackState, t_ns: int) -> bool:
+        """True if the shirt, which is visible, places trunk and arms in this frame set."""
         shirt, clothes = self._shirt_trust, self._clothes_trust
-        if self._clothes is None or self._watch is None:
+        if self._clothes is None or self._locator is None:
             return True
-        if known.by_shirt:
-            return shirt.believed or shirt.well or not clothes.believed
-        if self._watch.elsewhere is not None and clothes.believed:
-            elsewhere_ns = t_ns - self._watch.elsewhere_since_ns
-            return shirt.believed and elsewhere_ns >= nanoseconds(self.params.overrule_s)
-        return shirt.believed or (shirt.well and not clothes.believed)
+        if state.by_shirt:
+            return shirt.trusted or shirt.is_good or not clothes.trusted
+        if self._locator.separate_track is not None and clothes.trusted:
+            separate_ns = t_ns - self._locator.separate_since_ns
+            return shirt.trusted and separate_ns >= nanoseconds(self.params.overrule_s)
+        return shirt.trusted or (shirt.is_good and not clothes.trusted)
 
-    def _carried(
+    def _solve_by_shirt(
         self,
-        known: TrackState,
+        state: TrackState,
         predicted: MotionState,
-        trunk: ShirtFound,
-        seen: Observed | None,
+        trunk: ShirtEstimate,
+        observed: ClothesObservation | None,
         dt_s: float,
         frames: FrameSet,
-    ) -> tuple[TrackState, CueFindings]:
-        """Trunk and arms by the shirt, legs and head by the clothes."""
+    ) -> tuple[TrackState, CueEstimates]:
+        """Combines trunk and arms of the shirt with legs and head of the clothes."""
         assert self._shirt is not None
         t_ns, clothes = frames.t_ns, self._clothes
-        start, below = with_upper(predicted, trunk.motion), None
+        start, lower = replace_upper_body(predicted, trunk.motion), None
         if clothes is not None:
-            below = clothes.below(known, start, seen, dt_s, frames, self.probe)
-            self._judge_clothes(below, t_ns, len(clothes.cameras.present))
+            lower = clothes.fit_lower_body(state, start, observed, dt_s, frames, self.probe)
+            self._update_clothes_trust(lower, t_ns, len(clothes.cameras.present))
         names, changed = self._shirt.names(trunk.views), tuple(f"{s}_arm" for s in trunk.jumped)
-        if below is None:
-            motion = with_still_legs(start, known.motion, len(trunk.motion.velocity))
-            lasts = t_ns - known.whole_ns <= nanoseconds(self.params.legs_last_s)
-            whole, whole_ns = known.whole if lasts else None, known.whole_ns
-            since_ns = known.legs_since_ns if whole is not None else None
+        if lower is None:
+            motion = freeze_legs(start, state.motion, len(trunk.motion.velocity))
+            is_recent = t_ns - state.whole_ns <= nanoseconds(self.params.legs_last_s)
+            whole, whole_ns = state.whole if is_recent else None, state.whole_ns
+            since_ns = state.legs_since_ns if whole is not None else None
         else:
-            motion = joined(below.motion, trunk.motion)
-            whole, whole_ns = below.fit, t_ns
-            since_ns = t_ns if known.legs_since_ns is None else known.legs_since_ns
-            names, changed = (*names, *below.cameras), (*changed, *below.changed)
-        state = TrackState(
+            motion = join_bodies(lower.motion, trunk.motion)
+            whole, whole_ns = lower.fit, t_ns
+            since_ns = t_ns if state.legs_since_ns is None else state.legs_since_ns
+            names, changed = (*names, *lower.cameras), (*changed, *lower.changed)
+        updated = TrackState(
             t_ns, motion, tuple(dict.fromkeys(names)), trunk.fit, whole, whole_ns, since_ns, changed, trunk.taught_s,
             by_shirt=True,
         )  # fmt: skip
-        return state, CueFindings(trunk, below)
+        return updated, CueEstimates(trunk, lower)
 
-    def _begin(
-        self, wearer: Proportions, present: dict[int, float], frames: FrameSet
-    ) -> tuple[TrackState | None, CueFindings]:
-        """Look for somebody: where they were known, in the shirt, before the background."""
-        was_given = self._given.body is not None
-        for one in self._initialisers:
-            found = one.find(wearer, present, frames, self._ticks.now.turn)
-            self.probe(one.name)
-            if found is not None:
-                return self._begun(found, frames)
-            if was_given and one is self._given:
+    def _initialise(
+        self, wearer: BodyShapeEstimate, present: dict[int, float], frames: FrameSet
+    ) -> tuple[TrackState | None, CueEstimates]:
+        """Runs the initialisers in order: handed-over body, shirt, foreground person."""
+        had_handover = self._handed_over.body is not None
+        for initialiser in self._initialisers:
+            pose = initialiser.find(wearer, present, frames, self._ticks.now.frame_index)
+            self.probe(initialiser.name)
+            if pose is not None:
+                return self._start_track(pose, frames)
+            if had_handover and initialiser is self._handed_over:
                 self._tracking.reset()
-        return None, CueFindings()
+        return None, CueEstimates()
 
-    def _begun(self, found: Begun, frames: FrameSet) -> tuple[TrackState, CueFindings]:
-        t_ns = self._begun_ns = frames.t_ns
-        known, whole = TrackState(t_ns, found.body, ()), found.whole
+    def _start_track(self, pose: InitialPose, frames: FrameSet) -> tuple[TrackState, CueEstimates]:
+        t_ns = self._track_start_ns = frames.t_ns
+        state, whole = TrackState(t_ns, pose.body, ()), pose.whole
         if whole is not None:
-            known = TrackState(t_ns, whole.motion, whole.cameras, None, whole.fit, t_ns, t_ns)
-        if found.trunk is None:
-            return known, CueFindings(None, whole)
-        return self._carried(known, known.motion, found.trunk, None, 1e-3, frames)
+            state = TrackState(t_ns, whole.motion, whole.cameras, None, whole.fit, t_ns, t_ns)
+        if pose.trunk is None:
+            return state, CueEstimates(None, whole)
+        return self._solve_by_shirt(state, state.motion, pose.trunk, None, 1e-3, frames)
 
-    def _is_arriving(self, now: TrackState | None, t_ns: int) -> bool:
-        """Whether this is a first look at somebody whom the shirt may know better a moment later."""
+    def _is_too_young(self, state: TrackState | None, t_ns: int) -> bool:
+        """True for a new clothes-only track younger than `arrive_s`: the shirt may give a better pose a moment later."""
         if (
-            now is None
-            or now.by_shirt
+            state is None
+            or state.by_shirt
             or self._shirt is None
             or self._tracking.now is not Tracking.LOST
         ):
             return False
-        return t_ns - self._begun_ns < nanoseconds(self.params.arrive_s)
+        return t_ns - self._track_start_ns < nanoseconds(self.params.arrive_s)
 
-    def _judge_clothes(self, found: ClothesFound | None, t_ns: int, cameras: int) -> None:
-        quality = None if found is None else found.fit.explained
-        self._clothes_trust = self._clothes_trust.judged(t_ns, quality, cameras, CLOTHES_TRUST)
+    def _update_clothes_trust(
+        self, estimate: ClothesEstimate | None, t_ns: int, cameras: int
+    ) -> None:
+        quality = None if estimate is None else estimate.fit.explained
+        self._clothes_trust = self._clothes_trust.update(t_ns, quality, cameras, CLOTHES_TRUST)
 
-    def _learn(self, found: CueFindings, present: dict[int, float]) -> None:
-        """What each cue learns of a frame in which it saw the body."""
-        known, clothes = self._known, self._clothes
+    def _learn(self, estimates: CueEstimates, present: dict[int, float]) -> None:
+        """Updates each cue's background, light and colours from its estimate."""
+        state, clothes = self._state, self._clothes
         if self._shirt is not None:
-            self._shirt.learn(found.shirt, present, known is None)
+            self._shirt.learn(estimates.shirt, present, state is None)
         if clothes is not None:
-            clothes.learn(found.clothes, known is None, known is not None and known.by_shirt)
+            clothes.learn(estimates.clothes, state is None, state is not None and state.by_shirt)
 
-    def _coasts_s(self, known: TrackState, t_ns: int) -> float:
-        """How far a body that is not seen goes on [s]: then it stays."""
-        return min(seconds(t_ns - known.t_ns), 0.1)
+
+def _coast_s(state: TrackState, t_ns: int) -> float:
+    """For how long an unobserved body is extrapolated [s]; it then stands still."""
+    return min(seconds(t_ns - state.t_ns), 0.1)

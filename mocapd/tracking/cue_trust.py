@@ -1,4 +1,4 @@
-"""How far a cue is believed: hysteresis in quality and in time."""
+"""Trust in a cue: hysteresis in quality and time."""
 
 from dataclasses import dataclass
 
@@ -7,14 +7,17 @@ from mocapd.clock import nanoseconds
 
 @dataclass(frozen=True, slots=True)
 class TrustParams:
-    """quality: how much of the cue's evidence the body explains, 0..1. At `good` for confirm_s [s] a cue is believed; below
-    `poor` for doubt_s [s] no more; least_cameras: with fewer it does not begin to be."""
+    """quality: share of the cue's evidence that the body explains, 0..1.
+
+    A cue becomes trusted after confirm_s [s] at `good` or better, seen by least_cameras or more. It loses trust after
+    doubt_s [s] below `poor`.
+    """
 
     good: float
     poor: float
     least_cameras: int
-    confirm_s: float = 0.5  # one sleeve is free before the other
-    doubt_s: float = 0.1  # one frame that fails is no reason
+    confirm_s: float = 0.5  # when a jacket comes off, one sleeve is free before the other
+    doubt_s: float = 0.1  # a single bad frame must not count
 
 
 # Of 95 frames in 100 of seven captures with two cameras and more the shirt's quality is above 0.65, and always above 0.57;
@@ -26,25 +29,26 @@ CLOTHES_TRUST = TrustParams(good=0.5, poor=0.4, least_cameras=2)
 
 @dataclass(frozen=True, slots=True)
 class CueTrust:
-    """Of one cue. since_ns: since when every frame said the opposite of `believed`; None when the last one did not."""
+    """Trust in one cue. since_ns: start of the current run of frame sets that contradict `trusted`; None if the last one
+    agreed."""
 
-    believed: bool = False
-    well: bool = False  # in the last frame set
+    trusted: bool = False
+    is_good: bool = False  # in the last frame set
     since_ns: int | None = None
 
-    def judged(
+    def update(
         self, t_ns: int, quality: float | None, cameras: int, params: TrustParams
     ) -> "CueTrust":
-        """After a frame set of so many cameras; quality: None where the cue found no body."""
-        well = quality is not None and quality >= params.good and cameras >= params.least_cameras
-        if self.believed:
+        """The trust after a frame set of this many cameras. quality: None if the cue found no body."""
+        is_good = quality is not None and quality >= params.good and cameras >= params.least_cameras
+        if self.trusted:
             opposite = quality is None or quality < params.poor
             needed_s = params.doubt_s
         else:
-            opposite, needed_s = well, params.confirm_s
+            opposite, needed_s = is_good, params.confirm_s
         if not opposite:
-            return CueTrust(self.believed, well)
+            return CueTrust(self.trusted, is_good)
         since_ns = t_ns if self.since_ns is None else self.since_ns
         if t_ns - since_ns >= nanoseconds(needed_s):
-            return CueTrust(not self.believed, well)
-        return CueTrust(self.believed, well, since_ns)
+            return CueTrust(not self.trusted, is_good)
+        return CueTrust(self.trusted, is_good, since_ns)

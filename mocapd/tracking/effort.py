@@ -1,7 +1,7 @@
-"""How much a tracker computes for a frame set, and what it leaves out first on a machine that is too slow.
+"""How much optional work a tracker does for a frame set, and which work it skips first.
 
-The core has no clock: whoever steps a tracker measures, and hands an effort down. For a given effort the same frames give
-the same bodies.
+The core has no clock: the caller measures time and sets an effort. At a given effort the same frames give the same
+bodies.
 """
 
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 
 class Effort(Enum):
-    """From all of the work to what tracking cannot do without."""
+    """From all work to the essential work alone."""
 
     FULL = "full"
     SAVING = "saving"
@@ -20,21 +20,20 @@ class Effort(Enum):
 
 @dataclass(frozen=True, slots=True)
 class OptionalWork:
-    """How much of its optional work a tracker does; the dearest comes first.
+    """Amounts of optional work; the most expensive comes first.
 
-    other_poses: once in so many ticks (see `ticks.py`) a frame tries other poses of arms and legs that the pictures do not
-    confirm, and a body that faces the other way; network, depths, looks: between two uses of the network of joints, of
-    stereo depths, and between two frames that teach the look of the clothes or the light on the shirt, so many times the
-    usual time passes; uncovered: the same between two searches for ghosts in the background; legs: below a trunk that the
-    shirt carries, legs and head are fitted in one of so many frames, and go on as they moved in the others;
-    fewer_iterations: of the solver; fine: at most so many of its iterations look at all pixels.
+    hypotheses: ticks (see `ticks.py`) between tests of other arm and leg poses and of the opposite facing direction;
+    network, depths, learning, ghosts: factors on the usual interval between uses of the keypoint network, stereo depth
+    measurements, updates of the clothes' and the shirt's colours, and searches for ghosts in the background; legs: with a
+    trunk from the shirt, legs and head are fitted in one of this many frame sets and predicted in the others;
+    fewer_iterations: solver iterations to skip; fine: most iterations at full pixel density.
     """
 
-    other_poses: int = 1
+    hypotheses: int = 1
     network: int = 1
     depths: int = 1
-    looks: int = 1
-    uncovered: int = 1
+    learning: int = 1
+    ghosts: int = 1
     legs: int = 1
     fewer_iterations: int = 0
     fine: int = 2
@@ -44,14 +43,14 @@ WORK: Mapping[Effort, OptionalWork] = MappingProxyType(
     {
         Effort.FULL: OptionalWork(),
         Effort.SAVING: OptionalWork(
-            other_poses=3, network=2, depths=2, looks=2, uncovered=2, fewer_iterations=1
+            hypotheses=3, network=2, depths=2, learning=2, ghosts=2, fewer_iterations=1
         ),
         Effort.LEAST: OptionalWork(
-            other_poses=6,
+            hypotheses=6,
             network=3,
             depths=4,
-            looks=4,
-            uncovered=3,
+            learning=4,
+            ghosts=3,
             legs=2,
             fewer_iterations=1,
             fine=1,

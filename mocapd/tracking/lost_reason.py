@@ -1,19 +1,21 @@
-"""Why nobody is tracked, where a tracker can tell."""
+"""Reasons why no person is tracked."""
 
 from enum import StrEnum
 
 
 class LostReason(StrEnum):
-    """What keeps a tracker from tracking somebody; each says what is the case, and what the person can do."""
+    """Each reason comes with a description and a remedy for the user."""
 
-    UNRECOGNISED = "unrecognised"  # for seconds something as large as a person has moved that is not taken for one
+    UNRECOGNISED = (
+        "unrecognised"  # a person-sized region moved for seconds and failed the person checks
+    )
 
     @property
     def what(self) -> str:
-        """For people."""
+        """Description for the user."""
         return "somebody moves here who is not taken for a person"
 
     @property
     def fix(self) -> str:
-        """For people."""
+        """Remedy for the user."""
         return "stand upright once, facing the cameras, the whole body in view of all of them"

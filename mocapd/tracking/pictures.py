@@ -1,4 +1,4 @@
-"""One owner of a frame set's pictures: each is averaged down once, whichever cues look at it."""
+"""Downscaled pictures of a frame set, computed once and shared by all cues."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ from mocapd.vision.frame_size import check_frame_size
 
 @dataclass(slots=True, eq=False)
 class CameraPicture:
-    """The newest picture of one camera, bgr (h,w,3), averaged down by image_scale; both sides are even."""
+    """The newest picture of one camera, bgr (h,w,3), downscaled by image_scale; both sides are even."""
 
     camera: Camera
     image_scale: int
@@ -26,15 +26,17 @@ class CameraPicture:
         self.bgr = np.zeros((h, w, 3), np.uint8)
 
     def take(self, pixels: Bytes) -> None:
-        """The average over blocks of a frame's pixels."""
+        """Stores a frame's pixels, averaged over blocks."""
         h, w = self.bgr.shape[:2]
         k = self.image_scale
         cv2.resize(pixels[: h * k, : w * k], (w, h), dst=self.bgr, interpolation=cv2.INTER_AREA)
 
 
 class Pictures:
-    """One work picture for each camera of a rig; t_ns: of the frame set; present: each seeing camera's own time after that
-    [s], by its index."""
+    """A downscaled picture for each camera of a rig.
+
+    t_ns: time of the frame set; present: each present camera's time offset from it [s], by index.
+    """
 
     def __init__(self, cameras: Sequence[Camera], work_width_px: int, each: Each = in_turn) -> None:
         scales = image_scales(cameras, work_width_px)
@@ -43,12 +45,12 @@ class Pictures:
         self._index = {camera.name: i for i, camera in enumerate(cameras)}
         self._each = each
 
-    def look(self, frames: FrameSet) -> dict[int, float]:
-        """Take a frame set: `present`. Raises ConfigError when a frame is not of its calibration's size."""
+    def load(self, frames: FrameSet) -> dict[int, float]:
+        """Loads a frame set and returns `present`. Raises ConfigError when a frame's size is not its calibration's."""
         mine = sorted((self._index[n], f) for n, f in frames.frames.items() if n in self._index)
         for i, frame in mine:
             check_frame_size(frame.camera, frame.pixels, self.each[i].camera.size_px)
-        self._each(lambda one: self.each[one[0]].take(one[1].pixels), mine)
+        self._each(lambda item: self.each[item[0]].take(item[1].pixels), mine)
         self.t_ns = frames.t_ns
         self.present = {i: seconds(frame.t_ns - frames.t_ns) for i, frame in mine}
         return self.present

@@ -1,4 +1,4 @@
-"""Which feet stand, and where: a foot that has been in one place on the floor for a while is planted there."""
+"""Detects planted feet: a foot that has stayed in one place on the floor for a while is fixed there."""
 
 from dataclasses import dataclass
 
@@ -15,9 +15,12 @@ _FEET = np.array([[INDEX[side + bone] for bone in ("Foot", "Toes")] for side in 
 
 @dataclass(frozen=True, slots=True)
 class PlantedFeetParams:
-    """A foot is planted when ankle and toes have been within near_m of their mean place, and within low_m of the height that
-    they have in one who stands, for still_s. Its place follows them within follows_s. It is lifted, or stepped with, when
-    one of them is farther than far_m away or higher than high_m."""
+    """Hysteresis of a foot's contact with the floor.
+
+    Planted: ankle and toes have stayed within near_m of their mean place, and within low_m of their height in the
+    standing T-pose, for still_s. The place follows them with time constant follows_s. Lifted: one of them is farther than
+    far_m from the place or higher than high_m.
+    """
 
     near_m: float = 0.025
     low_m: float = 0.03
@@ -28,28 +31,28 @@ class PlantedFeetParams:
 
 
 class PlantedFeet:
-    """Remembers where each foot has been, and for how long."""
+    """Tracks each foot's mean place and how long it has stayed there."""
 
     def __init__(self, rest_m: Floats, params: PlantedFeetParams) -> None:
-        """rest_m (J,3): the joints of the body in the T-pose, on the floor."""
-        self._params, self._standing_m = params, rest_m[_FEET, 1]
+        """rest_m (J,3): joints of the T-pose, standing on the floor [m]."""
+        self._params, self._rest_height_m = params, rest_m[_FEET, 1]
         self.reset()
 
     def reset(self) -> None:
-        """No foot was seen."""
+        """Forgets all feet."""
         self._t_ns: int | None = None
         self._mean_m = np.zeros((2, 2, 2))  # of each foot's joints, along x and z
         self._still_s = np.zeros(2)  # for how long each foot has been there
 
     @property
     def joints(self) -> Ints:
-        """The joints (F,) of the feet that are planted."""
+        """Joints (F,) of the planted feet."""
         out: Ints = _FEET[self._is_planted].ravel()
         return out
 
     @property
     def places_m(self) -> Floats:
-        """Where they are (F,2), along x and z [m, world]."""
+        """Their places (F,2), x and z [m, world]."""
         out: Floats = self._mean_m[self._is_planted].reshape(-1, 2)
         return out
 
@@ -57,13 +60,13 @@ class PlantedFeet:
     def _is_planted(self) -> NDArray[np.bool_]:
         return np.asarray(self._still_s >= self._params.still_s)
 
-    def saw(self, joints_m: Floats, t_ns: int) -> None:
-        """A body with joints at joints_m (J,3) was found."""
+    def update(self, joints_m: Floats, t_ns: int) -> None:
+        """Updates both feet from the joints (J,3) [m] of a new fit."""
         p = self._params
         dt_s = 0.0 if self._t_ns is None else seconds(t_ns - self._t_ns)
         self._t_ns = t_ns
         feet_m = joints_m[_FEET]
-        place_m, height_m = feet_m[..., [0, 2]], feet_m[..., 1] - self._standing_m
+        place_m, height_m = feet_m[..., [0, 2]], feet_m[..., 1] - self._rest_height_m
         away_m = np.linalg.norm(place_m - self._mean_m, axis=-1).max(axis=1)
         planted = self._is_planted
         stays = np.where(planted, away_m <= p.far_m, away_m <= p.near_m)

@@ -1,4 +1,5 @@
-"""How firmly a fit holds to a predicted body: what the last fit left open, arms less where they were hardly confirmed."""
+"""The prior of a fit around the predicted pose: covariance of the last fit plus process noise, weaker for unconfirmed
+arms."""
 
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.fit_params import TICK_S, MotionPriorParams
@@ -16,8 +17,10 @@ def prediction_prior(
     uncertain_arm: float,
     params: MotionPriorParams,
 ) -> Floats:
-    """Information (n_pose,n_pose) of a body dt_s after its last fit, which moved at velocity (n_pose,) per second;
-    uncertain_arm: share of an arm's pixels that is confirmed of one that counts in full."""
+    """Information (n_pose,n_pose) of a pose predicted dt_s after the last fit, with velocity (n_pose,) per second.
+
+    uncertain_arm: confirmed share of an arm's pixels from which its prior has full weight.
+    """
     confirmed, columns = last.confirmed_arms, fitter.model.space.columns
     arms = [(columns(f"{side}_arm"), min(confirmed[side] / uncertain_arm, 1.0)) for side in SIDES]
     return predicted_information(

@@ -1,4 +1,4 @@
-"""The profiles of the body tracker: which cues each uses."""
+"""Profiles of the body tracker: the cues that each uses."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

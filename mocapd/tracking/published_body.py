@@ -1,4 +1,4 @@
-"""What is published of a tracked body: its pose, filtered, how far each joint may be believed, and by which cues."""
+"""Builds the published track: filtered pose, confidence and uncertainty of each joint, names of the carrying cues."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,31 +20,31 @@ from mocapd.tracking.cues.clothes.clothes_confidence import (
     joint_confidence as confidence_by_clothes,
 )
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
-from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound
+from mocapd.tracking.cues.clothes.clothes_solver import ClothesEstimate
 from mocapd.tracking.cues.shirt.shirt_confidence import joint_confidence as confidence_by_shirt
-from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
+from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtEstimate
 from mocapd.tracking.hypotheses.base import WHOLE
 from mocapd.tracking.pose_filter import PoseFilter
-from mocapd.tracking.track_state import TrackState, upper_of
-from mocapd.tracking.tracking_state import faded, grown
+from mocapd.tracking.track_state import TrackState, upper_body_state
+from mocapd.tracking.tracking_state import confidence_fade, grow_uncertainty
 from mocapd.tracking.trunk_and_legs import LOWER_BONES
 from mocapd.types import BodyState, Floats, Pose, Tracking
 
-_LOWER_JOINTS = np.setdiff1d(LOWER_BONES, [INDEX["neck"]])  # the shirt ends at the neck
+_LOWER_JOINTS = np.setdiff1d(LOWER_BONES, [INDEX["neck"]])  # the shirt covers the neck
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class CueFindings:
-    """What each cue found of a body in one frame set."""
+class CueEstimates:
+    """Each cue's estimate of the body in one frame set."""
 
-    shirt: ShirtFound | None = None
-    clothes: ClothesFound | None = None
+    shirt: ShirtEstimate | None = None
+    clothes: ClothesEstimate | None = None
 
 
-def published_body(
+def publish_body(
     state: TrackState,
     motion: MotionState,
-    found_now: CueFindings,
+    estimates: CueEstimates,
     shirt: ShirtCue | None,
     clothes: ClothesCue | None,
     pose_filter: PoseFilter,
@@ -52,32 +52,32 @@ def published_body(
     tracking: Tracking,
     shape: BodyShape,
 ) -> Track:
-    """The track of a body as known, of which `motion` is at t_ns, that is now."""
+    """The track at t_ns. motion: the body of `state`, extrapolated to t_ns."""
     away_s = seconds(t_ns - state.t_ns)
     confidence, uncertainty_m = np.zeros(N_JOINTS), np.full(N_JOINTS, np.inf)
-    found = None
+    unfiltered = None
     if state.whole is not None and clothes is not None:
-        found, uncertainty_m = _placed(clothes.fitter, motion, state.whole)
+        unfiltered, uncertainty_m = _placed(clothes.fitter, motion, state.whole)
         away_of_whole_s = seconds(t_ns - state.whole_ns)
         n = len(state.cameras)
         confidence = confidence_by_clothes(state.whole, n, uncertainty_m, away_of_whole_s)
     if state.by_shirt and state.trunk is not None and shirt is not None:
-        upper = upper_of(motion, shirt.model)
+        upper = upper_body_state(motion, shirt.model)
         by_trunk, of_trunk_m = _placed(shirt.fitter, upper, state.trunk)
-        found = by_trunk if found is None else found
+        unfiltered = by_trunk if unfiltered is None else unfiltered
         by_it = confidence_by_shirt(state.trunk, len(state.cameras), of_trunk_m, away_s)
         lower = _LOWER_JOINTS if state.whole is not None else np.empty(0, np.int64)
         by_it[lower], of_trunk_m[lower] = confidence[lower], uncertainty_m[lower]
         confidence, uncertainty_m = by_it, of_trunk_m
-    assert found is not None
+    assert unfiltered is not None
     carrier = _carrier(state)
     jumped = _bones(state.changed) if away_s == 0.0 else ()
     skeleton = skeleton_of(shape)
     pose = pose_filter.step(
-        found, confidence, t_ns, carrier, state.by_shirt, skeleton, jumped, state.legs_since_ns
+        unfiltered, confidence, t_ns, carrier, state.by_shirt, skeleton, jumped, state.legs_since_ns
     )
     joints_m = joint_positions(skeleton, pose)
-    unfiltered_m = joint_positions(skeleton, found)
+    unfiltered_m = joint_positions(skeleton, unfiltered)
     behind_m = np.linalg.norm(joints_m - unfiltered_m, axis=1) / np.sqrt(3.0)
     body = BodyState(
         t_ns=t_ns,
@@ -88,20 +88,20 @@ def published_body(
         confidence=confidence,
         cameras=state.cameras if away_s == 0.0 else (),
         smoothing_lag_ns=nanoseconds(pose_filter.lag_s),
-        uncertainty_m=np.hypot(grown(uncertainty_m, away_s), behind_m),
+        uncertainty_m=np.hypot(grow_uncertainty(uncertainty_m, away_s), behind_m),
     )
     carried_by = state.trunk if state.by_shirt else state.whole
     assert carried_by is not None
-    quality = carried_by.explained * faded(away_s)
-    if state.by_shirt and found_now.shirt is not None and shirt is not None:
-        return Track(body, shape, quality, *shirt.evidence(found_now.shirt.views))
-    if found_now.clothes is not None and clothes is not None:
-        return Track(body, shape, quality, *clothes.cameras.evidence(list(found_now.clothes.views)))
+    quality = carried_by.explained * confidence_fade(away_s)
+    if state.by_shirt and estimates.shirt is not None and shirt is not None:
+        return Track(body, shape, quality, *shirt.evidence(estimates.shirt.views))
+    if estimates.clothes is not None and clothes is not None:
+        return Track(body, shape, quality, *clothes.cameras.evidence(list(estimates.clothes.views)))
     return Track(body, shape, quality)
 
 
 def _placed(fitter: Fitter, motion: MotionState, fit: Fit) -> tuple[Pose, Floats]:
-    """The pose, and one standard deviation of each joint's place (J,) [m]."""
+    """The pose, and one standard deviation of each joint's position (J,) [m]."""
     joints_m, globals_xyzw = fitter.joints(motion)
     uncertainty_m = joint_uncertainty_m(
         fitter.model, joints_m, globals_xyzw, pose_covariance(fitter.model, fit.H)
@@ -110,7 +110,7 @@ def _placed(fitter: Fitter, motion: MotionState, fit: Fit) -> tuple[Pose, Floats
 
 
 def _carrier(state: TrackState) -> str:
-    """The cues that carry the body."""
+    """Names of the cues that carry the body."""
     cues = [
         name
         for name, carries in (("shirt", state.by_shirt), ("clothes", state.whole is not None))

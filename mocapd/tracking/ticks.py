@@ -1,7 +1,7 @@
-"""The time of frame sets in ticks of 1/30 s, by which work is scheduled that is not done in every one.
+"""The time of frame sets in ticks of 1/30 s, which schedule work that does not run in every frame set.
 
-At 30 Hz, also with some jitter, each frame set is one tick. At 15 Hz two pass with each, and at 60 Hz one with every second,
-so that what is due every third of a second is so at any rate, and after frames that were skipped.
+At 30 Hz, even with some jitter, each frame set is one tick. At 15 Hz two pass with each, at 60 Hz one with every second.
+So an interval in seconds holds at any frame rate and after dropped frames.
 """
 
 from dataclasses import dataclass
@@ -9,50 +9,52 @@ from dataclasses import dataclass
 from mocapd.clock import seconds
 from mocapd.fit.fit_params import TICK_S
 
-_JITTER = 0.15  # of a tick: by so much a frame set may be off without shifting the ticks after it
+_JITTER = 0.15  # of a tick: a smaller timing error does not shift later ticks
 
 
 @dataclass(frozen=True, slots=True)
 class Ticks:
-    """The ticks first ... last that passed with a frame set, counted from 1; none where `first` is greater.
+    """The ticks first ... last that passed with a frame set, counted from 1; none if `first` is greater.
 
-    turn: counts the frame sets with which one passed, for kinds of work that alternate: each gets its turn at any rate.
+    frame_index: counts the frame sets with at least one tick; kinds of work that alternate use it, at any frame rate.
     """
 
     first: int
     last: int
-    turn: int
+    frame_index: int
 
     @property
     def count(self) -> int:
-        """How many passed."""
+        """Number of ticks that passed."""
         return self.last - self.first + 1
 
     def due(self, every_s: float, at_s: float = 0.0) -> bool:
-        """Whether work falls due that is done every so many seconds, at_s after their multiples; in whole ticks."""
+        """True if work with this interval is due, at_s after its multiples; both are rounded to whole ticks."""
         every, at = round(every_s / TICK_S), round(at_s / TICK_S)
         return (self.last - at) // every > (self.first - 1 - at) // every
 
     def alternates(self, kinds: int, kind: int) -> bool:
-        """Whether it is the turn of this one of so many kinds of work."""
-        return self.count > 0 and self.turn % kinds == kind
+        """True if this frame set is for work of index `kind` among `kinds` that alternate."""
+        return self.count > 0 and self.frame_index % kinds == kind
 
 
 class TickClock:
-    """Counts ticks by the times of frame sets; now: those of the newest."""
+    """Counts ticks from the times of frame sets. now: ticks of the newest one."""
 
     def __init__(self) -> None:
         self.now = Ticks(1, 0, 0)
         self._t_ns: int | None = None
-        self._over = 0.0  # of a tick, that passed since the last one
+        self._remainder = 0.0  # time since the last tick [ticks]
 
     def pass_to(self, t_ns: int) -> Ticks:
-        """The ticks of a frame set of this time."""
-        passed = 1.0 if self._t_ns is None else seconds(t_ns - self._t_ns) / TICK_S + self._over
+        """The ticks of a frame set at this time."""
+        passed = (
+            1.0 if self._t_ns is None else seconds(t_ns - self._t_ns) / TICK_S + self._remainder
+        )
         count = round(passed)
-        self._t_ns, self._over = t_ns, passed - count
-        if abs(self._over) <= _JITTER:
-            self._over = 0.0
+        self._t_ns, self._remainder = t_ns, passed - count
+        if abs(self._remainder) <= _JITTER:
+            self._remainder = 0.0
         last = self.now.last
-        self.now = Ticks(last + 1, last + count, self.now.turn + (count > 0))
+        self.now = Ticks(last + 1, last + count, self.now.frame_index + (count > 0))
         return self.now

@@ -1,4 +1,4 @@
-"""All that is carried from frame to frame of somebody who is tracked: one body, whichever cues carry it."""
+"""The state of a track between frame sets: one body, whichever cues carry it."""
 
 from dataclasses import dataclass, replace
 
@@ -11,13 +11,15 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
-BEGUN_S = 0.1  # a body that other cues placed is held as loosely as a prediction over this time
+NEW_BODY_PRIOR_S = (
+    0.1  # the prior of a body from another cue is as loose as a prediction over this time
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Proportions:
-    """The proportions as handed in: factors (n_shape,) of the whole body with their information (n_shape,n_shape), and
-    for how many seconds of good tracking they were learned."""
+class BodyShapeEstimate:
+    """Body shape: factors (n_shape,) of the whole body, their information (n_shape,n_shape), and the seconds of good
+    tracking from which they were learned."""
 
     factors: Floats
     information: Floats
@@ -26,12 +28,12 @@ class Proportions:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TrackState:
-    """A whole body as it was last confirmed, at t_ns.
+    """A whole body at t_ns, the time of its last evidence.
 
-    trunk: the newest fit of trunk and arms to the shirt, None where it is not seen; by_shirt: whether that carries them;
-    whole: the newest fit to the clothes, of the whole body or of legs and head below a carried trunk, at whole_ns;
-    legs_since_ns: when legs and head were first found; cameras: those that showed the body; changed: parts of the body that
-    were found elsewhere than predicted; taught_s: see `Proportions`.
+    trunk: newest shirt fit of trunk and arms, None if the shirt is not visible; by_shirt: True if that fit places trunk
+    and arms; whole: newest clothes fit, of the whole body or of legs and head below a trunk from the shirt, at whole_ns;
+    legs_since_ns: first fit of legs and head; cameras: those that show the body; changed: parts of the body found away
+    from their prediction; taught_s: see `BodyShapeEstimate`.
     """
 
     t_ns: int
@@ -45,14 +47,15 @@ class TrackState:
     taught_s: float = 0.0
     by_shirt: bool = False
 
-    def of(self, wearer: Proportions) -> "TrackState":
-        """The same of a wearer as known to whoever steps the tracker."""
+    def with_shape(self, wearer: BodyShapeEstimate) -> "TrackState":
+        """The same state with the caller's body shape."""
         motion = replace(self.motion, factors=wearer.factors, information=wearer.information)
         return replace(self, motion=motion, taught_s=wearer.taught_s)
 
 
-def upper_of(whole: MotionState, upper: BodyModel) -> MotionState:
-    """Trunk and arms of a whole body, whose pose and factors begin with theirs; the local rotations of all joints stay."""
+def upper_body_state(whole: MotionState, upper: BodyModel) -> MotionState:
+    """Trunk and arms of a whole body, whose pose parameters and factors come first. Keeps the local rotations of all
+    joints."""
     n, s = upper.n_pose, upper.n_shape
     return replace(
         whole,
@@ -62,14 +65,14 @@ def upper_of(whole: MotionState, upper: BodyModel) -> MotionState:
     )
 
 
-def in_t_pose(model: BodyModel, root_m: Floats, wearer: Proportions) -> MotionState:
-    """Somebody in the T-pose who does not move."""
-    return at_rest(model, root_m, np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1)), wearer)
+def t_pose_state(model: BodyModel, root_m: Floats, wearer: BodyShapeEstimate) -> MotionState:
+    """A body in the T-pose at rest."""
+    return resting_state(model, root_m, np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1)), wearer)
 
 
-def at_rest(
-    model: BodyModel, root_m: Floats, local_xyzw: Floats, wearer: Proportions
+def resting_state(
+    model: BodyModel, root_m: Floats, local_xyzw: Floats, wearer: BodyShapeEstimate
 ) -> MotionState:
-    """Somebody who does not move."""
+    """A body at rest."""
     still = np.zeros(model.n_pose)
     return MotionState(root_m, local_xyzw, still, wearer.factors, wearer.information)

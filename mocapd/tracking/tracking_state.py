@@ -9,30 +9,30 @@ from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
 from mocapd.types import Floats, Tracking
 
-# How fast joints leave a pose that is told without evidence, along an axis: of 25 clips of everyday motion and sport
+# How fast joints leave a pose published without evidence, along an axis: of 25 clips of everyday motion and sport
 # the hips 0.3, elbows 0.4, hands 0.6
-STRAYS_M_S = 0.4
+DRIFT_M_S = 0.4
 COAST_S = 0.5
 FADE_S = 0.15  # a joint's confidence falls to 1/e in this time without evidence
 
 
-def faded(away_s: float) -> float:
-    """How much is left of a confidence without evidence since `away_s` [s]."""
+def confidence_fade(away_s: float) -> float:
+    """Factor on a confidence after away_s [s] without evidence."""
     return math.exp(-away_s / FADE_S)
 
 
-def grown(uncertainty_m: Floats, away_s: float) -> Floats:
-    """What uncertainties (J,) [m] have become without evidence since `away_s` [s]."""
-    grown_m: Floats = np.hypot(uncertainty_m, STRAYS_M_S * away_s)
-    return grown_m
+def grow_uncertainty(uncertainty_m: Floats, away_s: float) -> Floats:
+    """Uncertainties (J,) [m] after away_s [s] without evidence."""
+    total_m: Floats = np.hypot(uncertainty_m, DRIFT_M_S * away_s)
+    return total_m
 
 
 @dataclass(frozen=True, slots=True)
 class TrackingStateParams:
-    """coast_s: how long after the last evidence a pose is still predicted [s].
+    """coast_s: for how long after the last evidence a pose is still predicted [s].
 
-    confirm_s: how long evidence must persist, frame after frame, before a lost person is believed
-    to be back [s]; with the default that is the third frame at 30 Hz, the second at 15 Hz.
+    confirm_s: for how long every frame set must show evidence before a lost track becomes live [s]; the default is the
+    third frame at 30 Hz, the second at 15 Hz.
     """
 
     coast_s: float = COAST_S
@@ -45,7 +45,7 @@ class TrackingStateParams:
 
 
 class TrackingState:
-    """Starts lost. Evidence makes it live after `confirm_s`; without any it coasts, then is lost."""
+    """Starts lost. Evidence makes it live after `confirm_s`; without evidence it coasts, then is lost."""
 
     def __init__(self, params: TrackingStateParams | None = None) -> None:
         params = params if params is not None else TrackingStateParams()
@@ -54,13 +54,13 @@ class TrackingState:
         self.reset()
 
     def reset(self, live_ns: int | None = None) -> None:
-        """Lost, and nothing seen; or live, with the last evidence at that time [ns]."""
+        """Lost; or live, with the last evidence at that time [ns]."""
         self.now = Tracking.LOST if live_ns is None else Tracking.LIVE
         self._evidence_ns = live_ns  # the last time there was any
         self._since_ns: int | None = None  # while lost: since when every frame had some
 
     def step(self, t_ns: int, evidence: bool) -> Tracking:
-        """The state at `t_ns` [ns, never decreasing], given whether that frame shows the person."""
+        """The state at `t_ns` [ns, never decreasing]. evidence: this frame set shows the person."""
         if self._evidence_ns is not None and t_ns - self._evidence_ns > self._coast_ns:
             self.reset()  # also when no frame at all came meanwhile
         if self.now is not Tracking.LOST:

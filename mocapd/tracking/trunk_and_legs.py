@@ -1,4 +1,4 @@
-"""One body of two fits: trunk and arms as the shirt carries them, legs and head as the clothes show them below and above."""
+"""Combines two fits into one body: trunk and arms of the shirt, legs and head of the clothes."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
-# bones whose rotations the shirt does not tell
+# bones whose rotations the shirt does not observe
 LOWER_BONES = np.array(
     [INDEX[name] for name in ("neck", "head")]
     + [INDEX[s + n] for s in ("left", "right") for n in ("UpperLeg", "LowerLeg", "Foot", "Toes")]
@@ -17,10 +17,10 @@ LOWER_BONES = np.array(
 _FIRST_OF_LOWER = [INDEX[name] for name in ("neck", "leftUpperLeg", "rightUpperLeg")]
 
 
-def with_upper(whole: MotionState, upper: MotionState) -> MotionState:
-    """A whole body with this trunk and these arms; legs and head keep their local rotations."""
+def replace_upper_body(whole: MotionState, upper: MotionState) -> MotionState:
+    """A whole body with trunk and arms of `upper`; legs and head keep their local rotations."""
     velocity, factors, information = (
-        one.copy() for one in (whole.velocity, whole.factors, whole.information)
+        array.copy() for array in (whole.velocity, whole.factors, whole.information)
     )
     n, s = len(upper.velocity), len(upper.factors)
     velocity[:n], factors[:s], information[:s, :s] = (
@@ -31,30 +31,30 @@ def with_upper(whole: MotionState, upper: MotionState) -> MotionState:
     return MotionState(upper.root_m, upper.local_xyzw, velocity, factors, information)
 
 
-def joined(below: MotionState, upper: MotionState) -> MotionState:
-    """Trunk and arms of `upper`; legs and neck turned in the world as `below`, a whole body, has them."""
+def join_bodies(below: MotionState, upper: MotionState) -> MotionState:
+    """Trunk and arms of `upper`; legs and neck with the global rotations of `below`, a whole body."""
     local = upper.local_xyzw.copy()
     local[LOWER_BONES] = below.local_xyzw[LOWER_BONES]
     for joint in _FIRST_OF_LOWER:
         was = _in_world(below.local_xyzw, joint)
         parent = _in_world(upper.local_xyzw, PARENTS[joint])
         local[joint] = rotations.multiply(rotations.inverse(parent), was)
-    return with_upper(below, replace(upper, local_xyzw=rotations.canonical(local)))
+    return replace_upper_body(below, replace(upper, local_xyzw=rotations.canonical(local)))
 
 
-def with_still_legs(body: MotionState, known: MotionState, n_upper: int) -> MotionState:
-    """The body with the legs that were known, which nobody saw move; n_upper: pose parameters of trunk and arms."""
+def freeze_legs(body: MotionState, earlier: MotionState, n_upper: int) -> MotionState:
+    """The body with the legs of an earlier state, at rest. n_upper: number of pose parameters of trunk and arms."""
     local, velocity = body.local_xyzw.copy(), body.velocity.copy()
-    local[LOWER_BONES], velocity[n_upper:] = known.local_xyzw[LOWER_BONES], 0.0
+    local[LOWER_BONES], velocity[n_upper:] = earlier.local_xyzw[LOWER_BONES], 0.0
     return replace(body, local_xyzw=local, velocity=velocity)
 
 
-def straight_below(upper: MotionState, whole: MotionState) -> MotionState:
-    """A whole body with this upper one and legs that hang straight down."""
+def with_straight_legs(upper: MotionState, whole: MotionState) -> MotionState:
+    """A whole body with this upper body and legs that hang straight down."""
     local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
     free = np.setdiff1d(np.arange(N_JOINTS), LOWER_BONES)
     local[free] = upper.local_xyzw[free]
-    return with_upper(whole, replace(upper, local_xyzw=local))
+    return replace_upper_body(whole, replace(upper, local_xyzw=local))
 
 
 def _in_world(local_xyzw: Floats, joint: int) -> Floats:

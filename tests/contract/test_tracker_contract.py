@@ -14,7 +14,7 @@ from mocapd.body.skeleton import joint_positions
 from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.errors import ConfigError
 from mocapd.trackers.registry import TRACKERS, Resources, build
-from mocapd.tracking.base import EffortTracker, Track, unprobed
+from mocapd.tracking.base import EffortTracker, Track, no_probe
 from mocapd.tracking.effort import Effort
 from mocapd.types import BodyState, FrameSet, Tracking
 from tests.contract.tracker_cases import CASES, TrackerCase
@@ -56,7 +56,7 @@ def tracked(built: TrackerCase) -> Tracked:
     tracks = run(built.tracker, built.person[:halfway])
     half = copied(tracks[-1].body)
     tracks += run(built.tracker, built.person[halfway:])
-    built.tracker.tracker.probe = unprobed
+    built.tracker.tracker.probe = no_probe
     written = any(not np.array_equal(b, f.pixels) for b, f in zip(before, frames, strict=True))
     return Tracked(tracks, stages, written, half)
 

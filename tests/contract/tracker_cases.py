@@ -16,7 +16,7 @@ from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
 from mocapd.trackers.registry import Resources, build
 from mocapd.tracking.base import Tracker
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Frame, FrameSet
 from tests.sim import small
 from tests.sim.simulated_calibration import calibration_of_setup
@@ -74,7 +74,7 @@ def canned_case() -> TrackerCase:
     )
     known = Calibration(wearer=Wearer(1.7))
     tracker = build("canned", known, Resources())
-    return TrackerCase(Stepping(tracker, known_shape(known)), sets, sets)
+    return TrackerCase(Stepping(tracker, wearer_shape(known)), sets, sets)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +112,7 @@ def shirt_case(
     build_tracker: Callable[[Calibration, PoseDatabase], Tracker], *carriers: str
 ) -> TrackerCase:
     shown = filmed()
-    tracker = Stepping(build_tracker(shown.known, shown.database), known_shape(shown.known))
+    tracker = Stepping(build_tracker(shown.known, shown.database), wearer_shape(shown.known))
     return TrackerCase(tracker, shown.person, shown.empty, carriers)
 
 
@@ -149,7 +149,7 @@ def plain_case(
     build_tracker: Callable[[Calibration], Tracker], *carriers: str, ring: bool = False
 ) -> TrackerCase:
     shown = filmed_from_empty(ring)
-    tracker = Stepping(build_tracker(shown.known), known_shape(shown.known))
+    tracker = Stepping(build_tracker(shown.known), wearer_shape(shown.known))
     return TrackerCase(tracker, shown.person, shown.empty, carriers)
 
 

@@ -16,7 +16,7 @@ from mocapd.pipeline.idle_collection import ALL_EVERY_NS, YOUNG_EVERY_NS, IdleCo
 from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.tracking.base import Probe, Track, Tracker, lost_body, unprobed
+from mocapd.tracking.base import Probe, Track, Tracker, lost_body, no_probe
 from mocapd.tracking.effort import Effort
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, Frame, FrameSet, Tracking
@@ -32,7 +32,7 @@ class FailingTracker:
     name = "failing"
 
     def __init__(self) -> None:
-        self.probe: Probe = unprobed
+        self.probe: Probe = no_probe
         self._inner = CannedTracker()
         self._steps = 0
 

@@ -8,7 +8,7 @@ import pytest
 
 from mocapd.each import Each, in_turn
 from mocapd.session.worker_thread import map_in_two_threads
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Floats
 from tests.tracking.plain_film import N_EMPTY, plain_film
 from tests.tracking.profiles import markerless_tracker
@@ -84,7 +84,7 @@ def test_a_tracker_finds_the_same_to_the_last_bit() -> None:
 def _joints(each: Each) -> Floats:
     film = plain_film()
     tracker = markerless_tracker(film.known, each=each)
-    shape, joints = known_shape(film.known), []
+    shape, joints = wearer_shape(film.known), []
     for frames in film.frames[: N_EMPTY + 30]:
         track = tracker.step(frames, shape)
         shape = track.shape

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.each import Each, in_turn
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.tracking.base import no_time_passes
+from mocapd.tracking.base import frozen_clock
 from mocapd.tracking.body_tracker import BodyTracker
 from mocapd.tracking.build import build_body_tracker
 
@@ -21,7 +21,7 @@ def shirt_tracker(known: Calibration, database: PoseDatabase) -> BodyTracker:
 
 
 def markerless_tracker(
-    known: Calibration, each: Each = in_turn, now_ns: Callable[[], int] = no_time_passes
+    known: Calibration, each: Each = in_turn, now_ns: Callable[[], int] = frozen_clock
 ) -> BodyTracker:
     """By any clothes."""
     return build_body_tracker("markerless", known, None, clothes=True, each=each, now_ns=now_ns)

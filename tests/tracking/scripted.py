@@ -23,12 +23,12 @@ from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.base import Track
 from mocapd.tracking.body_tracker import BodyTracker
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
-from mocapd.tracking.cues.clothes.clothes_fits import ClothesFound, Observed
-from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtFound
+from mocapd.tracking.cues.clothes.clothes_solver import ClothesEstimate, ClothesObservation
+from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtEstimate
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.tracking.lost_reason import LostReason
-from mocapd.tracking.track_state import Proportions, TrackState, upper_of
-from mocapd.tracking.trunk_and_legs import joined
+from mocapd.tracking.track_state import BodyShapeEstimate, TrackState, upper_body_state
+from mocapd.tracking.trunk_and_legs import join_bodies
 from mocapd.types import BodyState, Floats, Frame, FrameSet, Pose, Rig
 
 STATURE_M = 1.7
@@ -143,16 +143,16 @@ class ScriptedShirt(_Scripted):
         self.segmenters = SimpleNamespace()
         self.looked_ns: list[int] = []
 
-    def _as_shirt(self, motion: MotionState | None) -> ShirtFound | None:
+    def _as_shirt(self, motion: MotionState | None) -> ShirtEstimate | None:
         if motion is None or self.sight.quality is None:
             return None
-        upper = upper_of(motion, UPPER)
-        return ShirtFound(_fit(UPPER, upper, self.sight.quality), upper, (), 0.0)
+        upper = upper_body_state(motion, UPPER)
+        return ShirtEstimate(_fit(UPPER, upper, self.sight.quality), upper, (), 0.0)
 
-    def follow(self, known: TrackState, predicted: MotionState, *_: object) -> ShirtFound | None:
+    def follow(self, known: TrackState, predicted: MotionState, *_: object) -> ShirtEstimate | None:
         return self._as_shirt(self.found_near(predicted))
 
-    def begin(self, body: MotionState, *_: object) -> ShirtFound | None:
+    def start_from(self, body: MotionState, *_: object) -> ShirtEstimate | None:
         self.looked_ns.append(self.frames.t_ns)
         return self._as_shirt(self.found_near(body))
 
@@ -161,13 +161,13 @@ class ScriptedShirt(_Scripted):
 
     def search(
         self,
-        _w: Proportions,
+        _w: BodyShapeEstimate,
         _p: dict[int, float],
         _t: int,
         _pause: float,
         better_than: float,
-        _turn: int,
-    ) -> ShirtFound | None:
+        _frame_index: int,
+    ) -> ShirtEstimate | None:
         found = self._as_shirt(self.found_near(None))
         return found if found is not None and found.fit.match > better_than else None
 
@@ -195,27 +195,33 @@ class ScriptedClothes(_Scripted):
             present=self.present, each=[self.nobody] * 3, evidence=lambda _: ({}, {})
         )
 
-    def _as_clothes(self, motion: MotionState | None) -> ClothesFound | None:
+    def _as_clothes(self, motion: MotionState | None) -> ClothesEstimate | None:
         if motion is None or self.sight.quality is None:
             return None
-        return ClothesFound(
+        return ClothesEstimate(
             _fit(WHOLE, motion, self.sight.quality), motion, (), tuple(self.frames.frames)
         )
 
-    def observe(self, predicted: MotionState, *_: object) -> Observed:
-        return Observed(predicted, [], ())
+    def observe(self, predicted: MotionState, *_: object) -> ClothesObservation:
+        return ClothesObservation(predicted, [], ())
 
-    def whole(self, known: TrackState, seen: Observed, *_: object) -> ClothesFound | None:
+    def fit_whole_body(
+        self, known: TrackState, seen: ClothesObservation, *_: object
+    ) -> ClothesEstimate | None:
         return self._as_clothes(self.found_near(seen.drawn))
 
-    def below(self, known: TrackState, start: MotionState, *_: object) -> ClothesFound | None:
+    def fit_lower_body(
+        self, known: TrackState, start: MotionState, *_: object
+    ) -> ClothesEstimate | None:
         seen = self.found_near(start)
-        return self._as_clothes(None if seen is None else joined(seen, upper_of(start, UPPER)))
+        return self._as_clothes(
+            None if seen is None else join_bodies(seen, upper_body_state(start, UPPER))
+        )
 
-    def search(self, _: Proportions, _t_ns: int) -> ClothesFound | None:
+    def search(self, _: BodyShapeEstimate, _t_ns: int) -> ClothesEstimate | None:
         return self._as_clothes(self.found_near(None))
 
-    def begin(self, there: MotionState, _: FrameSet) -> ClothesFound | None:
+    def start_from(self, there: MotionState, _: FrameSet) -> ClothesEstimate | None:
         return self._as_clothes(self.found_near(there))
 
     def lost_reason(self, _: int) -> LostReason | None:

@@ -9,7 +9,7 @@ from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Bytes, Floats, Frame, FrameSet
 from tests.sim import small
 from tests.sim.simulated_calibration import calibration_of_setup
@@ -75,4 +75,4 @@ def _still(pixels: Bytes) -> Bytes:
 def tracker_of(filmed: Filmed, database: PoseDatabase) -> Stepping:
     """The profile `shirt`, calibrated on the film's own room as a user would."""
     known = calibration_of_setup(setup_of(filmed.scenario, filmed.renderers))
-    return Stepping(shirt_tracker(known, database), known_shape(known))
+    return Stepping(shirt_tracker(known, database), wearer_shape(known))

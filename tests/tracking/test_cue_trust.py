@@ -18,14 +18,14 @@ def judged(
     trust, out = CueTrust(), []
     for (from_s, quality), (to_s, _) in pairwise(spans):
         for k in range(round(from_s * hz), round(to_s * hz)):
-            trust = trust.judged(round(k * 1e9 / hz), quality, cameras, PARAMS)
+            trust = trust.update(round(k * 1e9 / hz), quality, cameras, PARAMS)
             out.append((k / hz, trust))
     return out
 
 
 def changes_s(of: Sequence[tuple[float, CueTrust]]) -> list[float]:
     """When it began to be believed, no longer, again."""
-    believed = [(-1.0, False), *((t_s, trust.believed) for t_s, trust in of)]
+    believed = [(-1.0, False), *((t_s, trust.trusted) for t_s, trust in of)]
     return [now[0] for last, now in pairwise(believed) if now[1] is not last[1]]
 
 
@@ -45,7 +45,7 @@ def test_a_cue_that_finds_no_body_is_doubted_like_a_poor_one(hz: float) -> None:
 @pytest.mark.parametrize("believed", [True, False])
 def test_between_the_limits_nothing_changes(believed: bool) -> None:
     before = [(0.0, 0.7 if believed else 0.3), (1.0, 0.5), (4.0, None)]
-    assert judged(before)[-1][1].believed is believed
+    assert judged(before)[-1][1].trusted is believed
 
 
 def test_one_frame_that_fails_and_a_flash_change_nothing() -> None:
@@ -57,6 +57,6 @@ def test_with_too_few_cameras_trust_does_not_begin_but_stays() -> None:
     assert changes_s(judged([(0.0, 0.7), (2.0, None)], cameras=1)) == []
     trust = judged([(0.0, 0.7), (1.0, None)])[-1][1]
     for k in range(60):
-        trust = trust.judged(1_000_000_000 + k * 33_333_333, 0.7, 1, PARAMS)
-    assert trust.believed
-    assert not trust.well
+        trust = trust.update(1_000_000_000 + k * 33_333_333, 0.7, 1, PARAMS)
+    assert trust.trusted
+    assert not trust.is_good

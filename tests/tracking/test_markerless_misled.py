@@ -12,7 +12,7 @@ from mocapd.calibration.calibration_record import Calibration
 from mocapd.clock import nanoseconds
 from mocapd.published.hecht2009.build import build_hecht2009_tracker
 from mocapd.tracking.base import Track, Tracker
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import FrameSet, Tracking
 from tests.tracking.hard_film import CLOSE_PAIR, N_EMPTY, HardFilm, hard_film
 from tests.tracking.profiles import markerless_tracker
@@ -27,7 +27,7 @@ BOTH = pytest.mark.parametrize(
 
 
 def run(film: HardFilm, build: Build) -> list[Track]:
-    tracker = Stepping(build(film.known), known_shape(film.known))
+    tracker = Stepping(build(film.known), wearer_shape(film.known))
     return [tracker.step(one) for one in film.frames]
 
 
@@ -58,7 +58,7 @@ def test_the_person_is_who_came_first_and_is_nearer(scene: str, build: Build) ->
 
 def test_a_minute_without_a_face_changes_nothing() -> None:
     film = hard_film("turns_away")
-    tracker = Stepping(markerless_tracker(film.known), known_shape(film.known))
+    tracker = Stepping(markerless_tracker(film.known), wearer_shape(film.known))
     for one in film.frames:
         last = tracker.step(one)
     assert last.body.tracking is Tracking.LIVE

@@ -8,7 +8,7 @@ import pytest
 
 from mocapd.body.skeleton import INDEX
 from mocapd.tracking.base import Track
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import FrameSet, Tracking
 from tests.tracking.plain_film import N_EMPTY, PlainFilm, plain_film
 from tests.tracking.profiles import markerless_tracker
@@ -26,7 +26,7 @@ def film() -> PlainFilm:
 
 @pytest.fixture
 def tracker(film: PlainFilm) -> Stepping:
-    return Stepping(markerless_tracker(film.known), known_shape(film.known))
+    return Stepping(markerless_tracker(film.known), wearer_shape(film.known))
 
 
 def run(tracker: Stepping, frames: list[FrameSet]) -> list[Track]:
@@ -58,7 +58,7 @@ def test_somebody_who_walks_in_is_followed_from_head_to_foot(
 def test_on_a_slow_machine_a_look_goes_on_over_some_frames(film: PlainFilm) -> None:
     slow = Stepping(
         markerless_tracker(film.known, now_ns=count(step=1_000_000_000).__next__),
-        known_shape(film.known),
+        wearer_shape(film.known),
     )
     tracks = run(slow, film.frames)
     live = [i for i, t in enumerate(tracks) if t.body.tracking is Tracking.LIVE]
@@ -86,7 +86,7 @@ def test_a_camera_that_is_unplugged_leaves_the_other(film: PlainFilm, tracker: S
 def test_a_recording_that_never_shows_the_room_empty_tells_it_all_the_same() -> None:
     film = plain_film(to_m=(0.6, 0.2))
     never_empty = film.frames[N_EMPTY:]
-    shape = known_shape(film.known)
+    shape = wearer_shape(film.known)
     tracker = markerless_tracker(film.known)
     tracker.learn_room(never_empty)
     tracks = [tracker.step(one, shape) for one in never_empty]

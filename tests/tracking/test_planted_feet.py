@@ -14,7 +14,7 @@ from mocapd.fit.terms.planted_term import PlantedParams, PlantedTerm
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.tracking.planted_feet import PlantedFeet, PlantedFeetParams
-from mocapd.tracking.track_state import Proportions, in_t_pose
+from mocapd.tracking.track_state import BodyShapeEstimate, t_pose_state
 from mocapd.types import Floats
 
 pytestmark = pytest.mark.kernels
@@ -36,7 +36,7 @@ def feet_after(poses_m: list[tuple[float, Floats]], hz: float) -> PlantedFeet:
     feet, frame = PlantedFeet(BODY.rest_m, PlantedFeetParams()), 0
     for until_s, joints_m in poses_m:
         while frame / hz < until_s:
-            feet.saw(joints_m, nanoseconds(frame / hz))
+            feet.update(joints_m, nanoseconds(frame / hz))
             frame += 1
     return feet
 
@@ -69,7 +69,7 @@ def test_what_trembles_about_a_place_is_held_near_its_mean(hz: float) -> None:
         off_m = rng.normal(0.0, 0.005, (2, 3)) * (1.0, 0.0, 1.0)
         joints_m = BODY.rest_m.copy()
         joints_m[LEFT] += off_m
-        feet.saw(joints_m, nanoseconds(frame / hz))
+        feet.update(joints_m, nanoseconds(frame / hz))
     places_m = feet.places_m[np.isin(feet.joints, LEFT)]
     assert np.abs(places_m - BODY.rest_m[LEFT][:, [0, 2]]).max() < 0.003
 
@@ -77,8 +77,8 @@ def test_what_trembles_about_a_place_is_held_near_its_mean(hz: float) -> None:
 def test_a_planted_foot_holds_the_leg_but_not_against_what_is_far_away() -> None:
     rig = nominal_rig("camera", (320, 240))
     fitter = Fitter(BODY, silhouette_labels(BODY), rig.cameras, [1], FitParams())
-    wearer = Proportions(np.ones(BODY.n_shape), initial_information(BODY.space), 0.0)
-    body = in_t_pose(BODY, BODY.rest_m[0].copy(), wearer)
+    wearer = BodyShapeEstimate(np.ones(BODY.n_shape), initial_information(BODY.space), 0.0)
+    body = t_pose_state(BODY, BODY.rest_m[0].copy(), wearer)
     ankle = LEFT[0]
 
     def off_after_m(away_m: float) -> float:

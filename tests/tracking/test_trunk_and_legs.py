@@ -14,13 +14,13 @@ from mocapd.body.skeleton import (
 )
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.geometry import rotations
-from mocapd.tracking.track_state import upper_of
+from mocapd.tracking.track_state import upper_body_state
 from mocapd.tracking.trunk_and_legs import (
     LOWER_BONES,
-    joined,
-    straight_below,
-    with_still_legs,
-    with_upper,
+    freeze_legs,
+    join_bodies,
+    replace_upper_body,
+    with_straight_legs,
 )
 from mocapd.types import Floats, Pose
 from tests.body.random_poses import random_local, random_root
@@ -49,7 +49,7 @@ def places(state: MotionState) -> Floats:
 
 def test_the_trunk_is_the_shirts_and_the_legs_point_as_the_clothes_show_them() -> None:
     below, shirt = body(1), body(2)
-    both = joined(below, upper_of(shirt, UPPER))
+    both = join_bodies(below, upper_body_state(shirt, UPPER))
     np.testing.assert_array_equal(both.root_m, shirt.root_m)
     np.testing.assert_allclose(
         np.abs((both.local_xyzw * shirt.local_xyzw).sum(axis=1))[UPPER_BONES], 1.0
@@ -69,7 +69,7 @@ def test_the_trunk_is_the_shirts_and_the_legs_point_as_the_clothes_show_them() -
 
 def test_velocity_and_proportions_are_of_who_sees_them() -> None:
     below, shirt = body(1), body(2)
-    both = joined(below, upper_of(shirt, UPPER))
+    both = join_bodies(below, upper_body_state(shirt, UPPER))
     n, s = UPPER.n_pose, UPPER.n_shape
     for one, of_shirt, of_clothes, at in (
         (both.velocity, shirt.velocity, below.velocity, n),
@@ -83,8 +83,8 @@ def test_velocity_and_proportions_are_of_who_sees_them() -> None:
 
 def test_what_is_put_together_leaves_the_parts_as_they_were() -> None:
     below, shirt = body(1), body(2)
-    upper = upper_of(shirt, UPPER)
-    for one in (joined(below, upper), with_upper(below, upper)):
+    upper = upper_body_state(shirt, UPPER)
+    for one in (join_bodies(below, upper), replace_upper_body(below, upper)):
         one.velocity[:], one.factors[:] = 0.0, 0.0
     assert below.velocity.all()
     assert upper.velocity.all()
@@ -93,7 +93,7 @@ def test_what_is_put_together_leaves_the_parts_as_they_were() -> None:
 
 def test_legs_that_nobody_sees_stay_as_they_were_known() -> None:
     now, known = body(1), body(2)
-    still = with_still_legs(now, known, UPPER.n_pose)
+    still = freeze_legs(now, known, UPPER.n_pose)
     np.testing.assert_array_equal(still.local_xyzw[LOWER_BONES], known.local_xyzw[LOWER_BONES])
     np.testing.assert_array_equal(still.local_xyzw[UPPER_BONES], now.local_xyzw[UPPER_BONES])
     assert not still.velocity[UPPER.n_pose :].any()
@@ -101,8 +101,8 @@ def test_legs_that_nobody_sees_stay_as_they_were_known() -> None:
 
 
 def test_a_shirt_alone_has_legs_that_hang_straight() -> None:
-    shirt = upper_of(body(2), UPPER)
-    out = straight_below(shirt, body(1))
+    shirt = upper_body_state(body(2), UPPER)
+    out = with_straight_legs(shirt, body(1))
     assert out.local_xyzw[LOWER_BONES] == pytest.approx(
         np.tile(rotations.IDENTITY_XYZW, (len(LOWER_BONES), 1))
     )

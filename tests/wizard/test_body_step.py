@@ -13,7 +13,7 @@ from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wea
 from mocapd.errors import InputError
 from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import FrameSet, Rig
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.colour.colour_solving import StrokeDrawing, solve_colours
@@ -83,7 +83,7 @@ def measured(
 
     def make(draft: Draft, _cache_dir: Path, _tell: Tell) -> ReadyTracker:
         known = calibration_of(replace(draft, factors=None)).assuming(1.75)
-        return ReadyTracker(shirt_tracker(known, database), known_shape(known))
+        return ReadyTracker(shirt_tracker(known, database), wearer_shape(known))
 
     step = BodyStep(context, make)
     step.enter()
@@ -127,7 +127,7 @@ def test_every_camera_has_its_picture_though_the_last_frame_of_one_came_too_late
     person: SimulatedWearer, draft: Draft, database: PoseDatabase, bends: list[FrameSet]
 ) -> None:
     known = calibration_of(replace(draft, stature_m=person.stature_m))
-    tracker = Stepping(shirt_tracker(known, database), known_shape(known))
+    tracker = Stepping(shirt_tracker(known, database), wearer_shape(known))
     observations = BodyObservations(
         build_model(person.stature_m), person.rig.cameras, BodyObservationParams(every_s=0.0)
     )
@@ -165,7 +165,7 @@ def test_a_tracker_starts_nearer_from_measured_proportions(
 
     def tracker(factors: np.ndarray | None) -> Stepping:
         mine = replace(known, wearer=replace(known.wearer, shape_factors=factors))
-        return Stepping(shirt_tracker(mine, database), known_shape(mine))
+        return Stepping(shirt_tracker(mine, database), wearer_shape(mine))
 
     def error_m(one: Stepping) -> float:
         """Of the arms' joints over the first frames in which the wearer is known."""
@@ -247,7 +247,7 @@ def test_leaving_ends_the_measurement(
 
     def make(_draft: Draft, _cache_dir: Path, _tell: Tell) -> ReadyTracker:
         step.leave()
-        return ReadyTracker(shirt_tracker(known, database), known_shape(known))
+        return ReadyTracker(shirt_tracker(known, database), wearer_shape(known))
 
     context = FakeContext(tmp_path, draft)
     step = BodyStep(context, make)

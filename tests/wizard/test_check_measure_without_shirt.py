@@ -15,7 +15,7 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.idmap_renderer import IdMapRenderer, image_scales
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.geometry import rotations
-from mocapd.tracking.base import Probe, Track, unprobed
+from mocapd.tracking.base import Probe, Track, no_probe
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.types import BodyState, Camera, Floats, Frame, FrameSet, Pose, Rig, Tracking
 from tests.geometry.rigs import looking_at
@@ -39,7 +39,7 @@ class Outlines:
     name = "outlines"
 
     def __init__(self, cameras: tuple[Camera, ...]) -> None:
-        self.probe: Probe = unprobed
+        self.probe: Probe = no_probe
         self._model = build_model(SHAPE.stature_m, full_body())
         scales = image_scales(cameras, FitParams().work_width_px)
         self._drawings = [

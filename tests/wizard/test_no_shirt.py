@@ -17,7 +17,7 @@ from mocapd.errors import ConfigError, InputError
 from mocapd.geometry import rotations
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.trackers.registry import Resources, build, measuring_tracker
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Rig
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.check.check_step import missing
@@ -175,7 +175,7 @@ def test_a_turned_camera_is_found_by_the_outline() -> None:
     turned = Rig((first, replace(second, R=up @ second.R, t_m=up @ second.t_m)))
     verdicts = []
     for one in (rig, turned):
-        shape, into = known_shape(film.known), TrackingMeasures()
+        shape, into = wearer_shape(film.known), TrackingMeasures()
         watched = MeasuringTracker(
             markerless_tracker(film.known), one, shape, into.add, by_outline=True
         )

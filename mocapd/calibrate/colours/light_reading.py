@@ -169,7 +169,7 @@ class LightReader:
         """The pose from the database, fitted to the ids of the search."""
         p, segmenter = self._params, self._segmenters[index]
         segmenter.memory.references = (candidate.W,)
-        sighting = detection.sight(index, segmenter, self._database, p.neighbours)
+        sighting = detection.detect_shirt(index, segmenter, self._database, p.neighbours)
         if sighting is None:
             return None
         model = self._refinement.fitter.model
@@ -181,7 +181,7 @@ class LightReader:
             initial_information(model.space),
             model.n_pose,
         )
-        candidate = sighting.found
+        candidate = sighting.candidate
         unknown = np.full(candidate.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8)
         view = View(index, candidate.roi, candidate.ids, unknown, 0.0)
         asked = [_arms_out(state) for state in states]

@@ -3,7 +3,7 @@
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.published.hecht2009.params import Params
 from mocapd.published.hecht2009.tracker import Hecht2009Tracker
-from mocapd.tracking.known import known_rig, stature_m
+from mocapd.tracking.tracker_inputs import calibrated_rig, stature_m
 from mocapd.tracking.tracking_state import TrackingStateParams
 from mocapd.vision.face.lbp_cascade import frontal_faces
 
@@ -14,5 +14,5 @@ def build_hecht2009_tracker(
     tracking: TrackingStateParams | None = None,
 ) -> Hecht2009Tracker:
     """The tracker. Raises ConfigError naming what is missing."""
-    rig, stature = known_rig(calibration), stature_m(calibration)
+    rig, stature = calibrated_rig(calibration), stature_m(calibration)
     return Hecht2009Tracker(rig, stature, frontal_faces(), params or Params(), tracking)

@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.published.hecht2009.evidence import CameraEvidence
 from mocapd.tracking.cues.clothes.clothes_params import StartParams
-from mocapd.tracking.initialisers.stance import blobs_of, standing
+from mocapd.tracking.initialisers.standing_initialiser import blobs_of, person_candidates
 from mocapd.types import Floats
 
 _HEAD_MIDDLE = 0.935  # of the stature, above the floor
@@ -37,7 +37,7 @@ def head_of_standing(
         return None
     start = StartParams()
     blobs = {k: blobs_of(view.before, True, start) for k, view in enumerate(views)}
-    found = standing(
+    found = person_candidates(
         blobs,
         [view.camera for view in views],
         [view.image_scale for view in views],

@@ -48,8 +48,13 @@ from mocapd.published.hecht2009.mass_spring.skeleton_conversion import (
 from mocapd.published.hecht2009.params import FLOOR_M, Params
 from mocapd.published.hecht2009.part_confidence import joint_confidence, joint_uncertainty_m
 from mocapd.published.hecht2009.stances import stances_of
-from mocapd.tracking.base import Probe, Track, lost_body, require_stature, unprobed
-from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams, faded, grown
+from mocapd.tracking.base import Probe, Track, lost_body, no_probe, require_stature
+from mocapd.tracking.tracking_state import (
+    TrackingState,
+    TrackingStateParams,
+    confidence_fade,
+    grow_uncertainty,
+)
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Tracking
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
@@ -91,7 +96,7 @@ class Hecht2009Tracker:
         self._views = RigEvidence(rig, p)
         self._head = HeadTracker(rig.cameras, stature_m, cascade, p.head, p.seed)
         self._tracking = TrackingState(tracking)
-        self.probe: Probe = unprobed
+        self.probe: Probe = no_probe
         self.reset()
 
     def reset(self, near: BodyState | None = None) -> None:
@@ -325,11 +330,11 @@ class Hecht2009Tracker:
             tracker=self.name,
             pose=pose,
             joints_m=joint_positions(self._body.skeleton, pose),
-            confidence=joint_confidence(before, uncertainty_m) * faded(away_s),
+            confidence=joint_confidence(before, uncertainty_m) * confidence_fade(away_s),
             cameras=known.cameras if away_s == 0.0 else (),
-            uncertainty_m=grown(uncertainty_m, away_s),
+            uncertainty_m=grow_uncertainty(uncertainty_m, away_s),
         )
-        return Track(body, shape, known.quality * faded(away_s))
+        return Track(body, shape, known.quality * confidence_fade(away_s))
 
 
 def _mean_known(shares: Floats) -> float:

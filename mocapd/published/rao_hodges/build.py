@@ -3,7 +3,7 @@
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.published.rao_hodges.params import Params
 from mocapd.published.rao_hodges.tracker import RaoHodgesTracker
-from mocapd.tracking.known import known_rig, stature_m
+from mocapd.tracking.tracker_inputs import calibrated_rig, stature_m
 from mocapd.tracking.tracking_state import TrackingStateParams
 
 
@@ -13,4 +13,4 @@ def build_rao_hodges_tracker(
     tracking: TrackingStateParams | None = None,
 ) -> RaoHodgesTracker:
     """The tracker. Raises ConfigError naming what is missing."""
-    return RaoHodgesTracker(known_rig(calibration), stature_m(calibration), params, tracking)
+    return RaoHodgesTracker(calibrated_rig(calibration), stature_m(calibration), params, tracking)

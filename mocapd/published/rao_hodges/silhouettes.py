@@ -108,7 +108,7 @@ class RigSilhouettes:
 
     def look(self, frames: FrameSet) -> None:
         """Process the pictures. Raises ConfigError when a size is not the calibration's."""
-        there = self._pictures.look(frames)
+        there = self._pictures.load(frames)
         self.present = [self._every[i] for i in there]
         self.cameras = [self._cameras[i] for i in there]
 

@@ -32,8 +32,13 @@ from mocapd.published.rao_hodges.limb_weight import places_within, posed
 from mocapd.published.rao_hodges.params import Params
 from mocapd.published.rao_hodges.point_cloud import PointCloud, point_cloud
 from mocapd.published.rao_hodges.silhouettes import RigSilhouettes
-from mocapd.tracking.base import Probe, Track, lost_body, require_stature, unprobed
-from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams, faded, grown
+from mocapd.tracking.base import Probe, Track, lost_body, no_probe, require_stature
+from mocapd.tracking.tracking_state import (
+    TrackingState,
+    TrackingStateParams,
+    confidence_fade,
+    grow_uncertainty,
+)
 from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Rig, Tracking
 from mocapd.vision.hull.ray_hull import HullPoints, RayHullParams, hull_points, views_of
 
@@ -74,7 +79,7 @@ class RaoHodgesTracker:
         self._silhouettes = RigSilhouettes(rig, p)
         self._room_m = _box(_common_place(rig.cameras), p.room_m, p.height_m)
         self._tracking = TrackingState(tracking)
-        self.probe: Probe = unprobed
+        self.probe: Probe = no_probe
         self.reset()
 
     def reset(self, near: BodyState | None = None) -> None:
@@ -201,11 +206,11 @@ class RaoHodgesTracker:
             tracker=self.name,
             pose=pose,
             joints_m=joint_positions(skeleton_of(shape), pose),
-            confidence=by_joint(self._body, known.full) * faded(away_s),
+            confidence=by_joint(self._body, known.full) * confidence_fade(away_s),
             cameras=known.cameras if away_s == 0.0 else (),
-            uncertainty_m=grown(np.hypot(_SURE_M, _BONE_M * spread), away_s),
+            uncertainty_m=grow_uncertainty(np.hypot(_SURE_M, _BONE_M * spread), away_s),
         )
-        return Track(body, shape, known.quality * faded(away_s))
+        return Track(body, shape, known.quality * confidence_fade(away_s))
 
     def _spread_of_ellipsoids(self, spread: Floats) -> Floats:
         """(E,) the largest spread of each ellipsoid's own angles [rad]; 0 of one that has none."""

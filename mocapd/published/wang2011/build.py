@@ -5,7 +5,7 @@ from mocapd.published.wang2011.params import Params, published
 from mocapd.published.wang2011.tracker import Wang2011Tracker
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.tracking.known import known_rig, stature_m
+from mocapd.tracking.tracker_inputs import calibrated_rig, stature_m
 from mocapd.tracking.tracking_state import TrackingStateParams
 
 
@@ -20,5 +20,5 @@ def build_wang2011_tracker(
     colours = colour_model(shirt.model)
     W = white_balances(shirt.white_balance, colours, plain=True)
     params = params or published()
-    rig = known_rig(calibration)
+    rig = calibrated_rig(calibration)
     return Wang2011Tracker(rig, stature_m(calibration), colours, W, database, params, tracking)

@@ -32,10 +32,10 @@ from mocapd.tracking.base import (
     Probe,
     Track,
     lost_body,
+    no_probe,
     require_stature,
-    unprobed,
 )
-from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams, faded
+from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams, confidence_fade
 from mocapd.types import BodyState, Bytes, Floats, FrameSet, Pose, Rig, Tracking
 from mocapd.vision.raster_kernels import label_triangles
 
@@ -73,7 +73,7 @@ class Wang2011Tracker:
     ) -> None:
         """white_balance: W (3,3) per camera name, from the user's strokes; identity where missing."""
         self.params = params or Params()
-        self.probe: Probe = unprobed
+        self.probe: Probe = no_probe
         self._database = database
         self._model = build_model(stature_m)
         self._colour = shirt_labels(self._model).label
@@ -155,7 +155,7 @@ class Wang2011Tracker:
         last = self._last_state
         assert last is not None
         assert last.pose is not None
-        left = faded(seconds(t_ns - last.t_ns))
+        left = confidence_fade(seconds(t_ns - last.t_ns))
         live = tracking is Tracking.LIVE
         body = replace(
             last,

@@ -7,7 +7,7 @@ from mocapd.body.skeleton import INDEX, global_from_local, joint_positions
 from mocapd.clock import nanoseconds, seconds
 from mocapd.geometry import rotations
 from mocapd.trackers.canned.canned_motion import CannedMotion
-from mocapd.tracking.base import Probe, Track, lost_body, unprobed
+from mocapd.tracking.base import Probe, Track, lost_body, no_probe
 from mocapd.types import BodyState, FrameSet, Pose, Skeleton, Tracking
 
 UNCERTAINTY_M = 0.01  # typical of a real tracker
@@ -20,7 +20,7 @@ class CannedTracker:
 
     def __init__(self, motion: CannedMotion | None = None) -> None:
         self._motion = motion if motion is not None else CannedMotion()
-        self.probe: Probe = unprobed
+        self.probe: Probe = no_probe
 
     def reset(self, near: BodyState | None = None) -> None:
         """Does nothing: the tracker has no state."""

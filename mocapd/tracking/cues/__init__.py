@@ -1,1 +1,1 @@
-"""What a body is seen by, one folder each."""
+"""The cues of the body tracker, one folder each."""

@@ -1,4 +1,4 @@
-"""What a cue is: a kind of evidence of where a body is."""
+"""The interface of a cue: a kind of evidence for the body's pose."""
 
 from typing import Protocol
 
@@ -8,7 +8,7 @@ from mocapd.tracking.ticks import Ticks
 
 
 class Cue(Protocol):
-    """What every cue does; what it says of a body depends on the parts that it sees. work: what optional work is done."""
+    """A cue. What it observes of a body depends on its parts; work: the optional work to do."""
 
     name: str
     work: OptionalWork
@@ -18,7 +18,7 @@ class Cue(Protocol):
         ...
 
     def rehearse(self) -> None:
-        """Compile or load the kernels that only rare frames reach: whoever comes must not wait for them."""
+        """Compiles or loads the kernels that only rare frames reach, so that no person waits for them."""
         ...
 
     def take(self, pictures: Pictures, ticks: Ticks, /) -> None:

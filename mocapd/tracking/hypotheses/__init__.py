@@ -1,1 +1,1 @@
-"""Other poses that are out of the fit's reach, tried and kept where the pictures bear them better."""
+"""Alternative poses outside the solver's reach, accepted if the pictures confirm them better."""

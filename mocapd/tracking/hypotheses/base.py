@@ -1,4 +1,4 @@
-"""What a hypothesis is: another pose than the fitted one, that is tested against the pictures of one frame set."""
+"""The interface of a hypothesis: an alternative pose, tested against the pictures of one frame set."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
-from mocapd.tracking.cues.clothes.look import Dressed
+from mocapd.tracking.cues.clothes.region_merge import RegionSolvers
 from mocapd.tracking.ticks import Ticks
 from mocapd.types import Floats, FrameSet
 
@@ -18,32 +18,33 @@ WHOLE = "whole"  # as a part that changed: all of the body
 
 @dataclass(frozen=True, slots=True)
 class PoseEvidence:
-    """What a pose is judged by that is far from the predicted one: views of it, which draws it, and then its terms."""
+    """Evidence for a pose far from the predicted one: its views, which renders it, then its terms."""
 
-    classified: Callable[[MotionState], list[View]]
-    measured: Callable[[MotionState, Sequence[View]], Sequence[Term]]
+    classify: Callable[[MotionState], list[View]]
+    measure: Callable[[MotionState, Sequence[View]], Sequence[Term]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Situation:
+class HypothesisContext:
     """The frame set in which hypotheses are tested, dt_s after the last one.
 
     dressed: fitter and searches of the wearer's look; joints: the terms that saw joints, none in most frame sets; held:
     information (n_pose,n_pose) of every fit where a trunk leads that is known: legs and head alone may change then.
     """
 
-    dressed: Dressed
+    solvers: RegionSolvers
     dt_s: float
     frames: FrameSet
     ticks: Ticks
     joints: Sequence[JointTerm]
     evidence: PoseEvidence
-    held: Floats | None = None
+    trunk_prior: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Judged:
-    """A fit, what it was judged by, and the parts of the body that were found elsewhere; tried: whether others were."""
+class ScoredFit:
+    """A fit with its views and terms. changed: parts found away from their prediction; tried: True if alternatives were
+    fitted."""
 
     fit: Fit
     views: Sequence[View]
@@ -53,16 +54,16 @@ class Judged:
 
 
 class PoseHypothesis(Protocol):
-    """May remember what spoke for it in frame sets before."""
+    """May accumulate evidence between frame sets."""
 
     def reset(self) -> None:
-        """Nothing was seen of anybody."""
+        """Clears accumulated evidence."""
         ...
 
-    def rehearse(self, now: Judged, at: Situation, /) -> None:
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """Do once for nothing what ordinary frames do not reach: those must not wait for its kernels."""
         ...
 
-    def test(self, now: Judged, at: Situation, /) -> Judged:
-        """The present fit, or one that the pictures bear better."""
+    def test(self, now: ScoredFit, at: HypothesisContext, /) -> ScoredFit:
+        """The current fit, or one that the pictures confirm better."""
         ...

@@ -17,7 +17,7 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry import rotations
 from mocapd.tracking.hypotheses.axial_turn import seen_between_m, turn_about_rad
-from mocapd.tracking.hypotheses.base import Judged, Situation
+from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
 from mocapd.tracking.hypotheses.keypoint_poses import best_start
 
 
@@ -45,16 +45,16 @@ class FootHeading:
         """See PoseHypothesis."""
         self._next_tick = 0
 
-    def rehearse(self, now: Judged, at: Situation, /) -> None:
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """See PoseHypothesis: it has no kernels of its own."""
 
-    def test(self, now: Judged, at: Situation) -> Judged:
+    def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
         """See PoseHypothesis; as it is in frames that saw no joints."""
         p = self._params
         if at.ticks.last < self._next_tick:
             return now
         for joints in at.joints:
-            starts = list(turned_legs(at.dressed.fitter, now.fit.state, joints, p))
+            starts = list(legs_with_turned_feet(at.solvers.fitter, now.fit.state, joints, p))
             if starts:
                 better = best_start(now, at, joints, starts, p.iterations, p.gain, farther=0.0)
                 if better.fit is now.fit:
@@ -63,7 +63,7 @@ class FootHeading:
         return now
 
 
-def turned_legs(
+def legs_with_turned_feet(
     fitter: Fitter, state: MotionState, joints: JointTerm, params: FootHeadingParams
 ) -> Iterator[tuple[MotionState, tuple[str, ...]]]:
     """For each foot that points elsewhere than its toes were seen: the body with that leg turned about its length, and the

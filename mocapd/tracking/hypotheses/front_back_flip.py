@@ -1,4 +1,4 @@
-"""Which way somebody faces is hard to tell from an outline: the body turned round, by its face or by its fit."""
+"""The front-back flip hypothesis: an outline hardly shows the facing direction, so faces and flipped fits decide."""
 
 from dataclasses import dataclass, field, replace
 
@@ -6,10 +6,10 @@ import numpy as np
 
 from mocapd.fit.fit_result import Fit
 from mocapd.geometry.camera_model import centre
-from mocapd.tracking.cues.face.face_watch import FaceWatch, FaceWatchParams
-from mocapd.tracking.hypotheses.base import WHOLE, Judged, Situation
-from mocapd.tracking.hypotheses.turn_watch import TurnWatch, TurnWatchParams
-from mocapd.tracking.hypotheses.turned_round import MIRRORED, UNDER_LIMBS, turned_round
+from mocapd.tracking.cues.face.face_orientation import FaceOrientation, FaceOrientationParams
+from mocapd.tracking.hypotheses.base import WHOLE, HypothesisContext, ScoredFit
+from mocapd.tracking.hypotheses.flip_test import FlipTest, FlipTestParams
+from mocapd.tracking.hypotheses.flipped_poses import MIRRORED, UNDER_LIMBS, flipped_poses
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 _LOOSE_S = 0.4  # a body that is turned round is held as loosely as a prediction over this time
@@ -19,56 +19,58 @@ _LOOSE_S = 0.4  # a body that is turned round is held as loosely as a prediction
 class FlipParams:
     """most_loss: of what is explained, that a body turned round by its face may cost at first; iterations: of its fit."""
 
-    facing: FaceWatchParams = field(default_factory=FaceWatchParams)
-    turning: TurnWatchParams = field(default_factory=TurnWatchParams)
+    face: FaceOrientationParams = field(default_factory=FaceOrientationParams)
+    flip_test: FlipTestParams = field(default_factory=FlipTestParams)
     most_loss: float = 0.12
     iterations: int = 6
 
 
 class FrontBackFlip:
-    """Where no trunk leads that knows the way; see PoseHypothesis. Remembers what faces and fits said of the way."""
+    """See PoseHypothesis; skipped while the shirt places the trunk. Accumulates evidence from faces and fits."""
 
     def __init__(self, params: FlipParams, stature_m: float, cascade: CascadeArrays) -> None:
         """cascade: of frontal faces."""
         self._params = params
-        self._turning = TurnWatch(params.turning)
-        self._facing = FaceWatch(cascade, stature_m, params.facing)
+        self._flip_test = FlipTest(params.flip_test)
+        self._face = FaceOrientation(cascade, stature_m, params.face)
 
     def reset(self) -> None:
         """See PoseHypothesis."""
-        self._facing.reset()
-        self._turning.reset()
+        self._face.reset()
+        self._flip_test.reset()
 
-    def rehearse(self, _now: Judged, _at: Situation, /) -> None:
+    def rehearse(self, _now: ScoredFit, _at: HypothesisContext, /) -> None:
         """See PoseHypothesis."""
-        self._facing.rehearse()
+        self._face.rehearse()
 
-    def test(self, now: Judged, at: Situation) -> Judged:
+    def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
         """See PoseHypothesis."""
-        if at.held is not None:
+        if at.trunk_prior is not None:
             return now
-        found: Fit | None = None
-        self._facing.look(at.dressed.fitter, now.fit.state, now.views, at.frames, at.ticks)
-        if self._facing.is_turned:
-            self._facing.reset()
-            fits = [self._fitted(now, at, way) for way in (MIRRORED, UNDER_LIMBS)]
-            best = min(fits, key=lambda one: one.cost)
+        accepted: Fit | None = None
+        self._face.update(at.solvers.fitter, now.fit.state, now.views, at.frames, at.ticks)
+        if self._face.is_reversed:
+            self._face.reset()
+            fits = [self._fit_flipped(now, at, way) for way in (MIRRORED, UNDER_LIMBS)]
+            best = min(fits, key=lambda fit: fit.cost)
             if best.explained > now.fit.explained - self._params.most_loss:
-                found = best
-        elif self._turning.is_due(at.ticks, now.tried):
-            other = self._fitted(now, at, UNDER_LIMBS)
-            if self._turning.is_turned(now.fit, other):
-                self._turning.reset()
-                found = other
-            self._turning.looked(at.ticks)
-        return now if found is None else replace(now, fit=found, changed=(*now.changed, WHOLE))
+                accepted = best
+        elif self._flip_test.is_due(at.ticks, now.tried):
+            other = self._fit_flipped(now, at, UNDER_LIMBS)
+            if self._flip_test.is_better(now.fit, other):
+                self._flip_test.reset()
+                accepted = other
+            self._flip_test.record_test(at.ticks)
+        return (
+            now if accepted is None else replace(now, fit=accepted, changed=(*now.changed, WHOLE))
+        )
 
-    def _fitted(self, now: Judged, at: Situation, way: int) -> Fit:
-        """The body facing the other way, in one of the two ways of `turned_round`."""
-        fitter = at.dressed.fitter
+    def _fit_flipped(self, now: ScoredFit, at: HypothesisContext, way: int) -> Fit:
+        """The body facing the other way, in one of the two ways of `flipped_poses`."""
+        fitter = at.solvers.fitter
         eye = np.mean([centre(fitter.drawings[view.index].camera) for view in now.views], axis=0)
-        start = turned_round(fitter, now.fit.state, now.fit.state.root_m - eye)[way]
+        start = flipped_poses(fitter, now.fit.state, now.fit.state.root_m - eye)[way]
         for view in now.views:
             fitter.drawings[view.index].render(start, view.dt_s, view.roi)
-        terms = at.evidence.measured(start, now.views)
+        terms = at.evidence.measure(start, now.views)
         return fitter.fit(start, now.views, _LOOSE_S, self._params.iterations, terms=terms)

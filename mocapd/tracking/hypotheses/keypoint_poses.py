@@ -14,8 +14,12 @@ from mocapd.fit.limbs.limb_candidates import turned_rad2
 from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.terms.joint_term import JointTerm
-from mocapd.tracking.hypotheses.base import WHOLE, Judged, Situation
-from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams, seen_pose, starts_as_seen
+from mocapd.tracking.hypotheses.base import WHOLE, HypothesisContext, ScoredFit
+from mocapd.tracking.hypotheses.keypoint_starts import (
+    KeypointPoseParams,
+    fit_to_keypoints,
+    keypoint_starts,
+)
 
 _LONG_BONES = np.array([bone for limb in LIMBS.values() for bone in (limb.upper, limb.lower)])
 
@@ -23,47 +27,51 @@ _LONG_BONES = np.array([bone for limb in LIMBS.values() for bone in (limb.upper,
 class KeypointPoses:
     """See PoseHypothesis."""
 
-    def __init__(self, params: SeenPoseParams) -> None:
+    def __init__(self, params: KeypointPoseParams) -> None:
         self._params = params
 
     def reset(self) -> None:
         """See PoseHypothesis."""
 
-    def rehearse(self, now: Judged, at: Situation, /) -> None:
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """See PoseHypothesis."""
         for joints in at.joints:
-            seen_pose(at.dressed.fitter, now.fit.state, joints, (), self._params)
+            fit_to_keypoints(at.solvers.fitter, now.fit.state, joints, (), self._params)
 
-    def test(self, now: Judged, at: Situation) -> Judged:
-        """See `tried_as_seen`; as it is in frames that saw no joints."""
+    def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
+        """See `best_keypoint_pose`; as it is in frames that saw no joints."""
         for joints in at.joints:
-            now = tried_as_seen(now, at, joints, self._params)
+            now = best_keypoint_pose(now, at, joints, self._params)
         return now
 
 
-def tried_as_seen(now: Judged, at: Situation, joints: JointTerm, params: SeenPoseParams) -> Judged:
+def best_keypoint_pose(
+    now: ScoredFit, at: HypothesisContext, joints: JointTerm, params: KeypointPoseParams
+) -> ScoredFit:
     """The cheapest of the present fit and those that begin where the joints were seen."""
-    fitter = at.dressed.fitter
+    fitter = at.solvers.fitter
     held = [one for one in now.terms if not one.is_measured and one is not joints]
-    starts = starts_as_seen(fitter, now.fit, joints, held, params, legs_alone=at.held is not None)
+    starts = keypoint_starts(
+        fitter, now.fit, joints, held, params, legs_alone=at.trunk_prior is not None
+    )
     return best_start(now, at, joints, starts, params.fit_iterations, params.gain, params.farther)
 
 
 def best_start(
-    now: Judged,
-    at: Situation,
+    now: ScoredFit,
+    at: HypothesisContext,
     joints: JointTerm,
     starts: Sequence[tuple[MotionState, tuple[str, ...]]],
     iterations: int,
     gained: float,
     farther: float,
-) -> Judged:
+) -> ScoredFit:
     """The cheapest of the present fit and those that begin at `starts`, each with the parts that it changes.
 
     gained: by how much the cost must fall [disagreeing pixels]; farther: how much more it must fall for limbs that are
     farther away [disagreeing pixels/rad^2].
     """
-    fitter = at.dressed.fitter
+    fitter = at.solvers.fitter
     here_xyzw = now.fit.state.local_xyzw[_LONG_BONES]
 
     def cost_of(fit: Fit) -> float:
@@ -71,17 +79,17 @@ def best_start(
 
     best = replace(now, tried=True) if starts else now
     for start, changed in starts:
-        views = at.evidence.classified(start)
+        views = at.evidence.classify(start)
         if len(views) < len(now.views):
             continue
-        terms = at.evidence.measured(start, views)
+        terms = at.evidence.measure(start, views)
         fit = fitter.fit(
-            start, views, at.dt_s, iterations, rendered=True, fine=1, motion=at.held, terms=terms
+            start, views, at.dt_s, iterations, rendered=True, fine=1, motion=at.trunk_prior, terms=terms
         )  # fmt: skip
         away_rad2 = float(turned_rad2(fit.state.local_xyzw[None, _LONG_BONES], here_xyzw)[0])
         gain = now.fit.cost_for_any_pose - fit.cost_for_any_pose - farther * away_rad2
         if WHOLE in changed:  # the joints asked for it: the pictures must bear it without them
             gain -= cost_of(now.fit) - cost_of(fit)
         if gain > gained:
-            best, gained = Judged(fit, views, terms, changed, tried=True), gain
+            best, gained = ScoredFit(fit, views, terms, changed, tried=True), gain
     return best

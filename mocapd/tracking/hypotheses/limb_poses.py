@@ -5,7 +5,7 @@ from dataclasses import replace
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.limbs.arm_search import is_uncertain
-from mocapd.tracking.hypotheses.base import Judged, Situation
+from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
 
 
 class ArmPoses:
@@ -17,16 +17,18 @@ class ArmPoses:
     def reset(self) -> None:
         """See PoseHypothesis."""
 
-    def rehearse(self, now: Judged, at: Situation, /) -> None:
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """See PoseHypothesis."""
-        at.dressed.arms.rehearse(now.fit.state, now.views)
+        at.solvers.arms.rehearse(now.fit.state, now.views)
 
-    def test(self, now: Judged, at: Situation) -> Judged:
+    def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
         """See PoseHypothesis."""
-        if at.held is not None:
+        if at.trunk_prior is not None:
             return now
         tried = now.tried or any(is_uncertain(side, now.fit, self._params) for side in SIDES)
-        fit, sides = at.dressed.arms.improve(now.fit, now.views, at.dt_s, at.ticks.turn, now.terms)
+        fit, sides = at.solvers.arms.improve(
+            now.fit, now.views, at.dt_s, at.ticks.frame_index, now.terms
+        )
         changed = (*now.changed, *(f"{side}_arm" for side in sides))
         return replace(now, fit=fit, changed=changed, tried=tried)
 
@@ -37,13 +39,13 @@ class LegPoses:
     def reset(self) -> None:
         """See PoseHypothesis."""
 
-    def rehearse(self, now: Judged, at: Situation, /) -> None:
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """See PoseHypothesis."""
-        at.dressed.legs.rehearse(now.fit.state, now.views)
+        at.solvers.legs.rehearse(now.fit.state, now.views)
 
-    def test(self, now: Judged, at: Situation) -> Judged:
+    def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
         """See PoseHypothesis."""
-        fit, sides = at.dressed.legs.improve(
-            now.fit, now.views, at.dt_s, at.ticks.turn, now.terms, at.held
+        fit, sides = at.solvers.legs.improve(
+            now.fit, now.views, at.dt_s, at.ticks.frame_index, now.terms, at.trunk_prior
         )
         return replace(now, fit=fit, changed=(*now.changed, *(f"{side}_leg" for side in sides)))

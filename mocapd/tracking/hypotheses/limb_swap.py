@@ -12,7 +12,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.priors.pose_prior import unusual_legs
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
-from mocapd.tracking.hypotheses.base import Judged, Situation
+from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
 from mocapd.types import Floats
 
 _OF_HIPS = [INDEX[name] for name in ("spine", "leftUpperLeg", "rightUpperLeg")]
@@ -42,17 +42,17 @@ class LimbSwap:
         """See PoseHypothesis."""
         self._crossed_looks = 0
 
-    def rehearse(self, now: Judged, at: Situation, /) -> None:
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """See PoseHypothesis."""
-        with_legs_exchanged(at.dressed.fitter, now.fit.state)
+        with_legs_exchanged(at.solvers.fitter, now.fit.state)
 
-    def test(self, now: Judged, at: Situation) -> Judged:
+    def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
         """Both legs look alike, and crossed ones are unusual. Where no trunk leads the hips may be turned as the chest is,
         too: those of somebody who turned back may be left behind."""
-        p, fitter, fit = self._params, at.dressed.fitter, now.fit
+        p, fitter, fit = self._params, at.solvers.fitter, now.fit
         if not at.ticks.due(p.every_s):
             return now
-        hips_too = at.held is None
+        hips_too = at.trunk_prior is None
         joints_m, globals_xyzw = fitter.joints(fit.state)
         twisted = hips_too and abs(twist_rad(globals_xyzw)) > p.twisted_rad
         crossed = are_crossed(joints_m)

@@ -16,7 +16,7 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry import rotations
 from mocapd.tracking.hypotheses.axial_turn import seen_between_m, turn_about_rad
-from mocapd.tracking.hypotheses.base import Judged, Situation
+from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
 from mocapd.tracking.hypotheses.keypoint_poses import best_start
 from mocapd.types import Floats
 
@@ -46,16 +46,16 @@ class PelvisHeading:
     def reset(self) -> None:
         """See PoseHypothesis."""
 
-    def rehearse(self, now: Judged, at: Situation, /) -> None:
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """See PoseHypothesis: it has no kernels of its own."""
 
-    def test(self, now: Judged, at: Situation) -> Judged:
+    def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
         """See PoseHypothesis; as it is where the trunk is known, and in frames that saw no joints."""
         p = self._params
-        if at.held is not None:
+        if at.trunk_prior is not None:
             return now
         for joints in at.joints:
-            start = turned_pelvis(at.dressed.fitter, now.fit.state, joints, p)
+            start = turned_pelvis(at.solvers.fitter, now.fit.state, joints, p)
             if start is not None:
                 starts = [(start, ("left_leg", "right_leg"))]
                 now = best_start(now, at, joints, starts, p.iterations, p.gain, farther=0.0)

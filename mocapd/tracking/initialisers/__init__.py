@@ -1,1 +1,1 @@
-"""How somebody is found of whom nothing is known."""
+"""Initialisers: ways to start a track without a previous pose."""

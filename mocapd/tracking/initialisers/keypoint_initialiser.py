@@ -1,9 +1,9 @@
-"""The first pose of somebody who does not stand facing the cameras: from the joints that the network sees in all pictures.
+"""The first pose of a person who does not stand facing the cameras, from detected keypoints.
 
-A piece of the foreground that all cameras show in one place is looked at by the network of heatmaps, as if somebody's middle
-were there; the pose that leads through its joints is fitted to joints and silhouettes. It counts as a person only under
-checks that furniture, shadows and screens fail: the silhouette agrees, most joints are where the body has them in every
-camera, the body touches the floor, and all of that twice in a row in one place.
+The network runs on each foreground blob that all cameras show in one place. A pose from its triangulated keypoints is
+fitted to keypoints and silhouettes. It counts as a person only if the silhouette agrees, most keypoints agree in every
+camera and the body touches the floor, in two successive searches at one place: furniture, shadows and screens fail these
+checks.
 """
 
 from collections.abc import Generator, Mapping, Sequence
@@ -20,9 +20,15 @@ from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, rays
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import KeypointStartParams, StartParams
-from mocapd.tracking.cues.keypoints.joint_views import JointViews
+from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
 from mocapd.tracking.initialisers.keypoint_pose import pose_through, triangulated_joints
-from mocapd.tracking.initialisers.stance import Blob, Standing, blobs_of, fit_to_blobs, views_of
+from mocapd.tracking.initialisers.standing_initialiser import (
+    Blob,
+    PersonCandidate,
+    blobs_of,
+    fit_to_blobs,
+    views_of,
+)
 from mocapd.types import Camera, Floats
 from mocapd.vision.heatmaps.person_crop import middle_of
 
@@ -41,7 +47,7 @@ class KeypointCandidate:
     """
 
     fit: Fit
-    who: Standing
+    who: PersonCandidate
     shadows: bool
     spread_m: float
     off_sds2: float
@@ -50,13 +56,13 @@ class KeypointCandidate:
 
 
 class KeypointInitialiser:
-    """See the module's docstring. Remembers where somebody was at the last look."""
+    """See the module's docstring. Keeps the places of the last search."""
 
     def __init__(
         self,
         silhouettes: Fitter,
         floor: FloorTerm,
-        joints: JointViews,
+        joints: KeypointDetectors,
         views: CameraViews,
         cameras: Sequence[Camera],
         start: StartParams,
@@ -70,13 +76,13 @@ class KeypointInitialiser:
         self.reset()
 
     def reset(self) -> None:
-        """Nobody was seen."""
+        """Forgets these places."""
         self._last_m: list[Floats] = []
 
     def look(
         self, factors: Floats, information: Floats
     ) -> Generator[None, None, KeypointCandidate | None]:
-        """Somebody of these proportions who is seen for the second time; waits after each attempt."""
+        """A person of this shape found in two successive searches; yields after each attempt."""
         found: list[KeypointCandidate] = []
         for shadows in (False, True):
             for middle_m, who in self._candidates(shadows):
@@ -96,7 +102,7 @@ class KeypointInitialiser:
         return max(again, key=self._worth, default=None)
 
     def now(self, then: KeypointCandidate, walked_m: float) -> KeypointCandidate | None:
-        """Who was found in pictures of a while ago, in the newest ones; None: nobody is within walked_m [m] any more."""
+        """A person of older pictures refitted to the newest ones; None if none is within walked_m [m]."""
         near = [
             (away_m, middle_m, who)
             for middle_m, who in self._candidates(then.shadows)
@@ -113,16 +119,20 @@ class KeypointInitialiser:
         return one.fit.explained - (self._params.shadows_more if one.shadows else 0.0)
 
     def attempt(
-        self, middle_m: Floats, who: Standing, shadows: bool, factors: Floats, information: Floats
+        self,
+        middle_m: Floats,
+        who: PersonCandidate,
+        shadows: bool,
+        factors: Floats,
+        information: Floats,
     ) -> KeypointCandidate | None:
-        """The pose of somebody about middle_m (3,) whose silhouettes are these; None where the network is far from
-        sure of its joints, or sees no trunk."""
+        """A pose about middle_m (3,) for these blobs; None if the network is unsure of the keypoints or sees no trunk."""
         p, fitter = self._params, self._silhouettes
         state = _upright_about(fitter, middle_m, factors, information)
         hips_m = state.root_m
         for _ in range(p.looks):
-            watch = self._joints.watch(fitter, state, self._views)
-            terms = self._joints.term(fitter.model, map(watch, who.blobs))
+            detect = self._joints.detector(fitter, state, self._views)
+            terms = self._joints.term(fitter.model, map(detect, who.blobs))
             if not terms or len(terms[0].rays) < len(who.blobs):
                 return None
             joints = terms[0]
@@ -153,7 +163,7 @@ class KeypointInitialiser:
         )
 
     def is_person(self, one: KeypointCandidate) -> bool:
-        """Whether joints and silhouettes agree about somebody on the floor."""
+        """True if keypoints and silhouettes agree on a person on the floor."""
         p = self._params
         low_m, high_m = p.lowest_m
         return (
@@ -164,8 +174,8 @@ class KeypointInitialiser:
             and low_m <= one.lowest_m <= high_m
         )
 
-    def _candidates(self, shadows: bool) -> list[tuple[Floats, Standing]]:
-        """Where somebody's middle (3,) may be, and the pieces of the foreground there."""
+    def _candidates(self, shadows: bool) -> list[tuple[Floats, PersonCandidate]]:
+        """Candidate body centres (3,) with their blobs."""
         views = self._views
         blobs = {i: blobs_of(views.each[i].foreground, shadows, self._start) for i in views.present}
         if not blobs or any(not one for one in blobs.values()):
@@ -182,11 +192,11 @@ class KeypointInitialiser:
 
     def _best_middle(
         self, first: int, blob: Blob, blobs: Mapping[int, Sequence[Blob]], scales: Sequence[int]
-    ) -> tuple[Floats, Standing] | None:
+    ) -> tuple[Floats, PersonCandidate] | None:
         """The distance at which the pieces of all cameras agree most about one body on the floor."""
         p, start = self._params, self._start
         eye, ray = rays(self._cameras[first], _frame_px(_middle_px(blob), scales[first])[None])
-        best: tuple[Floats, Standing] | None = None
+        best: tuple[Floats, PersonCandidate] | None = None
         for away_m in np.arange(start.nearest_m, start.farthest_m, p.step_m):
             middle_m = np.reshape(eye, 3) + away_m * np.reshape(ray, 3)
             if not 0.0 < middle_m[1] < _HIGHEST_MIDDLE_M:
@@ -203,7 +213,7 @@ class KeypointInitialiser:
                 mine[i] = one
                 error += _off_px2(one, at, foot[1], height_px, p)
             if best is None or error < best[1].error:
-                best = middle_m, Standing(below_m, mine, error)
+                best = middle_m, PersonCandidate(below_m, mine, error)
         return best
 
 

@@ -1,4 +1,4 @@
-"""Who stands before the background and is to be tracked: a person, and of several the nearest."""
+"""Searches the foreground for the person to track; of several people, the nearest."""
 
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,19 +14,19 @@ from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import (
     KeypointStartParams,
-    MotionWatchParams,
+    MotionMonitorParams,
     StartParams,
 )
-from mocapd.tracking.cues.keypoints.joint_views import JointViews
+from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
 from mocapd.tracking.initialisers.keypoint_initialiser import KeypointCandidate, KeypointInitialiser
-from mocapd.tracking.initialisers.motion_watch import MotionWatch
-from mocapd.tracking.initialisers.stance import (
-    Standing,
+from mocapd.tracking.initialisers.motion_monitor import MotionMonitor
+from mocapd.tracking.initialisers.standing_initialiser import (
+    PersonCandidate,
     blobs_of,
-    first_fit,
+    fit_first_pose,
     fit_to_blobs,
     is_standing,
-    standing,
+    person_candidates,
     views_of,
 )
 from mocapd.tracking.lost_reason import LostReason
@@ -38,10 +38,10 @@ Found = tuple[Fit, tuple[str, ...]]  # somebody, and the cameras that show them
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Seen:
-    """Somebody before the background, or likely so, and as the cameras show them; shadows: with what may be one; low: as
-    the network's joints found them, who does not stand."""
+    """A person in the foreground, or a candidate, with its views. shadows: the blobs include possible shadows; low: the
+    keypoint candidate, for a person who does not stand upright."""
 
-    who: Standing
+    who: PersonCandidate
     shadows: bool
     views: tuple[View, ...]
     low: KeypointCandidate | None = None
@@ -50,48 +50,48 @@ class _Seen:
 _Likely = tuple[Fit, _Seen]
 
 
-class LookTimes:
-    """When to look. Where a piece of a look takes long, others get as many pictures before the next as it cost them."""
+class AttemptSchedule:
+    """When to search. After a slow piece of a search, other work gets as much time as the piece took."""
 
     def __init__(self, params: StartParams) -> None:
         self._pause_ns = nanoseconds(params.pause_s)
         self._most_ns = nanoseconds(params.most_rest_s)
         self._next_ns = 0
-        self._looked_ns: int | None = None  # until the frame set after it has come
+        self._attempt_ns: int | None = None  # until the frame set after it has come
 
-    def came(self, t_ns: int) -> None:
+    def on_frame_set(self, t_ns: int) -> None:
         """A frame set: the first after a piece tells how long that took."""
-        if self._looked_ns is None:
+        if self._attempt_ns is None:
             return
-        took_ns, self._looked_ns = t_ns - self._looked_ns, None
+        took_ns, self._attempt_ns = t_ns - self._attempt_ns, None
         if took_ns > self._pause_ns:
             self._next_ns = t_ns + min(took_ns, self._most_ns)
 
     def is_due(self, t_ns: int) -> bool:
-        """Of a frame set that came, in which nobody is known: whether it is time for a look, or for more of one."""
+        """True if this frame set should start or continue a search."""
         return t_ns >= self._next_ns
 
-    def looked(self, t_ns: int, to_the_end: bool) -> None:
+    def on_attempt(self, t_ns: int, to_the_end: bool) -> None:
         """A piece was done at this frame set; after the last piece of a look there is a pause."""
-        self._looked_ns = t_ns
+        self._attempt_ns = t_ns
         if to_the_end:
             self._next_ns = t_ns + self._pause_ns
 
 
 class PersonSearch:
-    """Looks for somebody; on a slow machine a look goes on over some frame sets, as the webcams and the output cannot wait.
-    Remembers when it may look again, and where somebody was likely at the last look."""
+    """Searches for a person; on a slow machine one search runs over several frame sets, so that capture and output
+    continue. Keeps the schedule and the candidates of the last search."""
 
     def __init__(
         self,
         silhouettes: Fitter,
         floor: FloorTerm,
-        joints: JointViews,
+        joints: KeypointDetectors,
         views: CameraViews,
         cameras: Sequence[Camera],
         params: StartParams,
         low: KeypointStartParams,
-        motion: MotionWatchParams,
+        motion: MotionMonitorParams,
         now_ns: Callable[[], int],
     ) -> None:
         """silhouettes: a fitter whose body is of one colour; cameras: those of the views; low: of who does not stand;
@@ -99,25 +99,25 @@ class PersonSearch:
         self._silhouettes, self._floor, self._views = silhouettes, floor, views
         self._cameras, self._params, self._clock_ns = cameras, params, now_ns
         self._joints, self._least_joints = joints, low.least_joints
-        self._motion = MotionWatch(motion)
+        self._motion = MotionMonitor(motion)
         self._low = KeypointInitialiser(silhouettes, floor, joints, views, cameras, params, low)
         self.reset()
 
     def reset(self) -> None:
-        """Look at once, and remember nobody."""
-        self.times = LookTimes(self._params)
+        """Forgets all candidates and searches at once."""
+        self.times = AttemptSchedule(self._params)
         self._likely_m: list[Floats] = []
         self._low.reset()
         self._motion.reset()
         self.give_up()
 
     def give_up(self) -> None:
-        """The look under way is of no use any more."""
+        """Cancels the search in progress."""
         self._under_way: Generator[None, None, _Likely | None] | None = None
 
     def look(self, factors: Floats, information: Floats, t_ns: int) -> Found | None:
-        """Somebody of these proportions as the newest pictures show them, and the cameras that do; None: nobody, or not
-        known yet, or it is not time to look."""
+        """A person of this shape in the newest pictures, with the cameras that show it; None if none is confirmed yet or
+        no search is due."""
         if self._views.are_new:
             self.give_up()
             return None
@@ -126,7 +126,7 @@ class PersonSearch:
         begins = self._under_way is None
         if self._under_way is None:
             self._see()
-            self._motion.look(
+            self._motion.update(
                 t_ns, {i: self._views.each[i].foreground for i in self._views.present}
             )
             self._under_way = self._look(factors, information)
@@ -137,7 +137,7 @@ class PersonSearch:
                 next(self._under_way)
         except StopIteration as end:
             self.give_up()
-            self.times.looked(t_ns, to_the_end=True)
+            self.times.on_attempt(t_ns, to_the_end=True)
             likeliest: _Likely | None = end.value
             if likeliest is not None and not begins:
                 likeliest = self._as_now(*likeliest)
@@ -145,11 +145,11 @@ class PersonSearch:
                 return None
             self._motion.reset()
             return likeliest[0], self._names(likeliest[1])
-        self.times.looked(t_ns, to_the_end=False)
+        self.times.on_attempt(t_ns, to_the_end=False)
         return None
 
     def lost_reason(self, t_ns: int) -> LostReason | None:
-        """Why nobody is found, where that can be told."""
+        """Why no person is found, if known."""
         return self._motion.reason(t_ns)
 
     def _look(self, factors: Floats, information: Floats) -> Generator[None, None, _Likely | None]:
@@ -157,8 +157,14 @@ class PersonSearch:
         p = self._params
         fits = []
         for seen in [one for shadows in (False, True) for one in self._standing(shadows)]:
-            fit = yield from first_fit(
-                self._silhouettes, seen.who, seen.views, factors, information, (self._floor,), p
+            fit = yield from fit_first_pose(
+                self._silhouettes,
+                seen.who,
+                seen.views,
+                factors,
+                information,
+                (self._floor,),
+                p,
             )
             fits.append((fit, seen))
         likely = [one for one in fits if self._is_likely(one[0]) and self._is_person(*one)]
@@ -177,7 +183,7 @@ class PersonSearch:
         return fit, seen
 
     def _as_now(self, fit: Fit, then: _Seen) -> _Likely | None:
-        """Who was found in pictures of a while ago, in the newest ones; None: nobody is near there any more."""
+        """The person of older pictures refitted to the newest ones; None if no candidate is near."""
         p = self._params
         self._see()
         if then.low is not None:
@@ -204,17 +210,17 @@ class PersonSearch:
         self._views.remove_ghosts()
 
     def _standing(self, shadows: bool) -> list[_Seen]:
-        """The likeliest people before the background; shadows: with what may be one."""
+        """The likeliest standing people in the foreground. shadows: include possible shadows."""
         p, views = self._params, self._views
         blobs = {i: blobs_of(views.each[i].foreground, shadows, p) for i in self._clear_cameras()}
         smaller = [one.image_scale for one in views.each]
         stature_m = self._silhouettes.model.stature_m
-        people = standing(blobs, self._cameras, smaller, stature_m, p)[: p.people]
+        people = person_candidates(blobs, self._cameras, smaller, stature_m, p)[: p.people]
         return [_Seen(who, shadows, views_of(who, views.present)) for who in people]
 
     def _clear_cameras(self) -> list[int]:
-        """Without those whose picture hardly shows its background, as in another light or with somebody close to the lens:
-        a silhouette that fills the picture says nothing. All where fewer than two would be left."""
+        """Cameras without those whose picture hardly shows its background (changed light, or a person close to the lens):
+        such a silhouette carries no information. All cameras if fewer than two would remain."""
         views, most = self._views, self._params.most_share
         clear = [
             i for i in views.present if np.mean(views.each[i].foreground != BACKGROUND) <= most
@@ -229,8 +235,8 @@ class PersonSearch:
     def _is_person(self, fit: Fit, seen: _Seen) -> bool:
         """Whether the network knows the joints of a body where furniture may stand: in one picture of those that show enough
         of them."""
-        watch = self._joints.watch(self._silhouettes, fit.state, self._views)
-        terms = self._joints.term(self._silhouettes.model, map(watch, seen.who.blobs))
+        detect = self._joints.detector(self._silhouettes, fit.state, self._views)
+        terms = self._joints.term(self._silhouettes.model, map(detect, seen.who.blobs))
         spreads_m = [one for term in terms for one in term.median_spreads_m(self._least_joints)]
         known_m = [one for one in spreads_m if one < np.inf]
         return not known_m or min(known_m) <= self._params.spread_m

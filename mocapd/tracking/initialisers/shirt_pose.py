@@ -1,8 +1,8 @@
-"""Somebody in the shirt, by the pose database: its patches are looked for in all of the pictures."""
+"""Starts from the shirt: searches all pictures for its patches and looks them up in the pose database."""
 
-from mocapd.tracking.cues.shirt.shirt_watch import ShirtWatch
-from mocapd.tracking.initialisers.base import Begun
-from mocapd.tracking.track_state import Proportions
+from mocapd.tracking.cues.shirt.shirt_locator import ShirtLocator
+from mocapd.tracking.initialisers.base import InitialPose
+from mocapd.tracking.track_state import BodyShapeEstimate
 from mocapd.types import FrameSet
 
 
@@ -11,12 +11,19 @@ class ShirtPose:
 
     name = "shirt_pose"
 
-    def __init__(self, watch: ShirtWatch) -> None:
-        self._watch = watch
+    def __init__(self, locator: ShirtLocator) -> None:
+        self._locator = locator
 
     def find(
-        self, wearer: Proportions, present: dict[int, float], frames: FrameSet, turn: int, /
-    ) -> Begun | None:
+        self,
+        wearer: BodyShapeEstimate,
+        present: dict[int, float],
+        frames: FrameSet,
+        frame_index: int,
+        /,
+    ) -> InitialPose | None:
         """See Initialiser."""
-        trunk = self._watch.search(wearer, present, frames.t_ns, turn)
-        return None if trunk is None else Begun(self._watch.standing(trunk, wearer), trunk)
+        trunk = self._locator.search(wearer, present, frames.t_ns, frame_index)
+        return (
+            None if trunk is None else InitialPose(self._locator.upright_body(trunk, wearer), trunk)
+        )

@@ -16,7 +16,7 @@ from mocapd.pipeline.smoothing import Smoother
 from mocapd.session.tracker_setup import cache_resources, ready_tracker
 from mocapd.trackers.registry import entry, measuring_tracker
 from mocapd.tracking.base import Tracker
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Rig
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
@@ -55,7 +55,7 @@ def prepare(
     progress("loading the pose database", 0, 1)
     measures = TrackingMeasures()
     name = measuring_tracker(section.name, calibration.wearer.has_shirt)
-    shape = known_shape(calibration)
+    shape = wearer_shape(calibration)
     ready = ready_tracker(
         name,
         calibration,

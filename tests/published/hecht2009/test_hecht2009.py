@@ -11,7 +11,7 @@ from mocapd.published.hecht2009.mass_spring.simulation import relaxed
 from mocapd.published.hecht2009.part_confidence import joint_confidence, joint_uncertainty_m
 from mocapd.published.hecht2009.stances import stances_of
 from mocapd.tracking.base import Track
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import FrameSet, Tracking
 from tests.tracking.plain_film import N_EMPTY, PlainFilm, plain_film
 from tests.tracking.stepping import Stepping
@@ -26,7 +26,7 @@ def film() -> PlainFilm:
 
 @pytest.fixture(scope="module")
 def tracker(film: PlainFilm) -> Stepping:
-    return Stepping(build_hecht2009_tracker(film.known), known_shape(film.known))
+    return Stepping(build_hecht2009_tracker(film.known), wearer_shape(film.known))
 
 
 def run(tracker: Stepping, frames: list[FrameSet]) -> list[Track]:

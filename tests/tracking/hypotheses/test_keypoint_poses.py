@@ -16,17 +16,21 @@ from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
-from mocapd.tracking.cues.clothes.look import Dressed
-from mocapd.tracking.hypotheses.base import Judged, PoseEvidence, Situation
+from mocapd.tracking.cues.clothes.region_merge import RegionSolvers
+from mocapd.tracking.hypotheses.base import HypothesisContext, PoseEvidence, ScoredFit
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
-from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams, legs_exchanged, starts_as_seen
+from mocapd.tracking.hypotheses.keypoint_starts import (
+    KeypointPoseParams,
+    keypoint_starts,
+    legs_exchanged,
+)
 from mocapd.tracking.ticks import Ticks
 from mocapd.types import Floats, FrameSet, Ints
 from tests.tracking.hypotheses.test_limb_swap import BODY, FITTER, standing
 
 pytestmark = pytest.mark.kernels
 
-PARAMS = SeenPoseParams(whole_cost=1e9)  # limbs alone
+PARAMS = KeypointPoseParams(whole_cost=1e9)  # limbs alone
 DT_S = 1.0 / 30.0
 LIMBS = np.array([INDEX[s + j] for s in ("left", "right") for j in ("LowerArm", "Hand", "LowerLeg", "Foot")])  # fmt: skip
 HAND, FOOT = INDEX["leftHand"], INDEX["leftFoot"]
@@ -74,11 +78,11 @@ def drawn(state: MotionState) -> list[View]:
     return views
 
 
-def situation(joints: JointTerm, evidence: PoseEvidence) -> Situation:
-    dressed = Dressed(
+def situation(joints: JointTerm, evidence: PoseEvidence) -> HypothesisContext:
+    solvers = RegionSolvers(
         FITTER, ArmSearch(FITTER, LimbSearchParams()), LegSearch(FITTER, LegSearchParams())
     )
-    return Situation(dressed, DT_S, FrameSet(0, {}, 0), Ticks(1, 1, 1), (joints,), evidence)
+    return HypothesisContext(solvers, DT_S, FrameSet(0, {}, 0), Ticks(1, 1, 1), (joints,), evidence)
 
 
 def nobody(state: MotionState) -> list[View]:
@@ -98,7 +102,7 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
     def measured(_: MotionState, __: Sequence[View]) -> Sequence[Term]:
         return (joints,)
 
-    now = Judged(fit, views, (joints,))
+    now = ScoredFit(fit, views, (joints,))
     found = KeypointPoses(PARAMS).test(now, situation(joints, PoseEvidence(shown, measured)))
     assert found.tried
     off_m = np.linalg.norm(FITTER.joints(found.fit.state)[0][HAND] - goal_m[HAND])
@@ -114,7 +118,7 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
 def test_where_limbs_are_as_they_were_seen_nothing_is_tried() -> None:
     here = standing(0.0, 0.1)
     fit = FITTER.fit(here, drawn(here), DT_S, 1)
-    now = Judged(fit, drawn(here), ())
+    now = ScoredFit(fit, drawn(here), ())
     seen = seen_at(FITTER.joints(fit.state)[0])
     at = situation(seen, PoseEvidence(drawn, lambda _, __: ()))
     assert KeypointPoses(PARAMS).test(now, at) is now
@@ -141,7 +145,7 @@ def test_legs_that_are_taken_for_each_other_are_no_reason_to_move_them() -> None
         seen = seen_at(seen_m)
         joints_m = FITTER.joints(fit.state)[0]
         assert legs_exchanged(seen, joints_m, seen.costs(joints_m), PARAMS) is exchanged
-    starts = starts_as_seen(FITTER, fit, seen_at(taken_m), (), PARAMS)
+    starts = keypoint_starts(FITTER, fit, seen_at(taken_m), (), PARAMS)
     assert starts == []
 
 
@@ -152,7 +156,7 @@ def test_where_the_upper_body_is_known_legs_are_tried_as_seen_unless_the_trunk_i
     fit = FITTER.fit(here, drawn(here), DT_S, 1)
     here_m = FITTER.joints(fit.state)[0]
     legs_m = with_legs_of_the_other_side(here_m)
-    ((start, changed), *_) = starts_as_seen(
+    ((start, changed), *_) = keypoint_starts(
         FITTER, fit, seen_at(legs_m), (), PARAMS, legs_alone=True
     )
     assert set(changed) == {"left_leg", "right_leg"}
@@ -161,13 +165,13 @@ def test_where_the_upper_body_is_known_legs_are_tried_as_seen_unless_the_trunk_i
     turned_m = legs_m.copy()
     turned_m[TRUNK] = here_m[OTHER_SIDE[TRUNK]]
     both = seen_at(turned_m, np.concatenate([TRUNK, LIMBS]))
-    assert starts_as_seen(FITTER, fit, both, (), PARAMS, legs_alone=True) == []
+    assert keypoint_starts(FITTER, fit, both, (), PARAMS, legs_alone=True) == []
 
 
 def test_a_leg_that_was_seen_elsewhere_is_tried_there() -> None:
     here, there = standing(0.0, 0.1), kicking(standing(0.0, 0.1), "left")
     fit = FITTER.fit(here, drawn(here), DT_S, 1)
     goal_m = FITTER.joints(there)[0]
-    ((start, changed), *_) = starts_as_seen(FITTER, fit, seen_at(goal_m), (), PARAMS)
+    ((start, changed), *_) = keypoint_starts(FITTER, fit, seen_at(goal_m), (), PARAMS)
     assert changed == ("left_leg",)
     assert np.linalg.norm(FITTER.joints(start)[0][FOOT] - goal_m[FOOT]) < 0.15

@@ -8,7 +8,7 @@ from mocapd.calibration.from_origin import from_capture
 from mocapd.capture.capture_folder import frame_sets
 from mocapd.evaluate.capture_eval import open_case
 from mocapd.tracking.build import build_body_tracker
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Tracking
 
 FRAMES = 30  # the person is in view from the 21st
@@ -18,7 +18,7 @@ def test_the_person_is_found_by_the_other_cameras(dev_captures: Callable[[str], 
     case = open_case(dev_captures("ring4_striped_throw"))
     known = from_capture(case.folder)
     tracker = build_body_tracker("markerless", known, None, clothes=True)
-    shape, states = known_shape(known), []
+    shape, states = wearer_shape(known), []
     for frames in islice(frame_sets(case.folder), FRAMES):
         track = tracker.step(frames, shape)
         shape = track.shape

@@ -9,7 +9,7 @@ import pytest
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
-from mocapd.tracking.known import known_shape
+from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Bytes, Floats, Frame, FrameSet, Tracking
 from tests.sim import small
 from tests.sim.simulated_calibration import calibration_of_setup
@@ -42,7 +42,7 @@ def seated() -> tuple[Stepping, list[FrameSet], list[Floats]]:
     joints_m = [world.at(renderers[0].exposure_s(k)).joints_m for k in range(N_PERSON)]
     known = calibration_of_setup(setup_of(scenario, renderers))
     sets = [_set(pictures, k) for k, pictures in enumerate(shown)]
-    return Stepping(markerless_tracker(known), known_shape(known)), sets, joints_m
+    return Stepping(markerless_tracker(known), wearer_shape(known)), sets, joints_m
 
 
 def _set(pictures: dict[str, Bytes], k: int) -> FrameSet:

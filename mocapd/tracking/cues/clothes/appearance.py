@@ -1,8 +1,7 @@
-"""What the wearer looks like to one camera: the colours of each region, and of what is beside them.
+"""The appearance of the wearer in one camera: colour histograms of each region and of other foreground.
 
-The paper learns ten colours along each limb over the first frames and then keeps them (Hecht et al. 2009, III.E). Here they
-are histograms of regions, learned slowly on, since light changes and people turn; what else stands before the background is
-learned as a class of its own.
+Hecht et al. (2009, III.E) learn ten colours along each limb over the first frames and then fix them. Here the histograms
+keep adapting slowly, since light changes and people turn; other foreground is a class of its own.
 """
 
 from collections.abc import Sequence
@@ -67,7 +66,7 @@ class Appearance:
         self.reset()
 
     def reset(self) -> None:
-        """Nothing was seen."""
+        """Clears the histograms."""
         self._counts[:] = 0.0
         self._refresh()
 
@@ -85,7 +84,7 @@ class Appearance:
         self._refresh()
 
     def overlap(self, one: int, other: int) -> float:
-        """0..1: how much of two regions' colours is the same; 1 where one of them was not seen."""
+        """Overlap of two regions' colour histograms, 0..1; 1 if one of them is empty."""
         shares = []
         for k in (one, other):
             share = np.exp(-self._table[k]) - self._params.least_share
@@ -94,9 +93,9 @@ class Appearance:
             shares.append(share / share.sum())
         return float(np.minimum(*shares).sum())
 
-    def join(self, look: Sequence[int]) -> None:
-        """Count what was seen of each region with the region of its look, which is learned as one from now on."""
-        for k, other in enumerate(look):
+    def merge_regions(self, merge: Sequence[int]) -> None:
+        """Adds the histogram of each merged region to that of its target."""
+        for k, other in enumerate(merge):
             if other != k:
                 self._counts[other] += self._counts[k]
                 self._counts[k] = 0.0

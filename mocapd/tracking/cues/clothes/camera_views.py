@@ -1,4 +1,4 @@
-"""What each camera shows: work pictures, what stands before the background, and the regions of the predicted body."""
+"""Per-camera state of the clothes cue: downscaled picture, background model, foreground mask and appearance model."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import TypeVar
@@ -24,8 +24,8 @@ from mocapd.vision.room_background import RoomBackground
 
 T = TypeVar("T")
 
-_ASIDE = np.ones((13, 13), np.uint8)  # half of it: how far beside an outline is looked
-_LINE = np.ones((3, 3), np.uint8)
+_OUTLINE_OFFSET = np.ones((13, 13), np.uint8)  # half of it: how far beside an outline is looked
+_OUTLINE_WIDTH = np.ones((3, 3), np.uint8)
 
 
 class CameraView:
@@ -48,7 +48,7 @@ class CameraView:
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
         self.may_hold_body = False  # the background, learned from a recording with somebody in it
-        self.beside, self.close = (
+        self.body_margin, self.close_margin = (
             np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
         )
 
@@ -71,7 +71,7 @@ class CameraView:
             here = (ids > 0).astype(np.uint8)
             self.drawn[y0:y1, x0:x1] = here
             # the region has a wider margin than that
-            self.body[y0:y1, x0:x1] = cv2.dilate(here, self.beside)
+            self.body[y0:y1, x0:x1] = cv2.dilate(here, self.body_margin)
 
     def mark_person(self, odds: Singles, crop: PersonCrop) -> None:
         """Where the network sees the person: logarithms of odds (96,96) in a crop of the picture."""
@@ -87,11 +87,11 @@ class CameraView:
         self.background.learn(self.picture, self.body, ticks)
         if agrees and self.near is not None:
             x0, y0, x1, y1 = self.near
-            body = np.asarray(cv2.dilate(self.drawn[y0:y1, x0:x1], self.close), np.uint8)
+            body = np.asarray(cv2.dilate(self.drawn[y0:y1, x0:x1], self.close_margin), np.uint8)
             self.background.learn_unknown(self.picture, body, self.near)
 
     def update_foreground(self, everywhere: bool = True) -> None:
-        """Renew what stands before the background, whose light may jump; not everywhere: about the marked body alone."""
+        """Updates light and foreground mask; not everywhere: only about the marked body."""
         gain = self.background.follow_light(self.picture, self.body)
         if gain is not None:
             self.appearance.relight(gain)
@@ -128,16 +128,16 @@ class CameraViews:
             self.each[i].person_odds[:] = 0.0
         self.present = present
 
-    def know_room(
-        self, shown: Mapping[int, Sequence[Bytes]], times_s: Mapping[int, Floats]
+    def learn_room(
+        self, pictures_bgr: Mapping[int, Sequence[Bytes]], times_s: Mapping[int, Floats]
     ) -> None:
-        """Learn each background from pictures (h,w,3) of these times, by camera, in which somebody may be all the time."""
-        for i, pictures in shown.items():
+        """Learns each background from pictures (h,w,3) of these times, by camera, that may always show a person."""
+        for i, pictures in pictures_bgr.items():
             self.each[i].background.set_known(*clip_background(pictures, times_s[i]))
             self.each[i].may_hold_body = True
 
-    def doubt_background(self) -> None:
-        """What the body that was found covers may have been learned with the room: what looks like it is not known there."""
+    def distrust_background(self) -> None:
+        """Clears the background under a newly found body where it may have been learned from that body."""
         for i in self.present:
             camera = self.each[i]
             if camera.may_hold_body:
@@ -146,12 +146,12 @@ class CameraViews:
 
     @property
     def are_new(self) -> bool:
-        """Whether some background is not known yet."""
+        """True if a present camera has no background model yet."""
         return any(self.each[i].background.is_new for i in self.present)
 
     @property
-    def know_appearance(self) -> bool:
-        """Whether every present camera learned what the wearer looks like."""
+    def has_appearance(self) -> bool:
+        """True if every present camera has learned the wearer's appearance."""
         return all(self.each[i].appearance.is_learned for i in self.present)
 
     def mark_body(self, state: MotionState | None) -> None:
@@ -167,13 +167,13 @@ class CameraViews:
         """Renew what stands before each background; not everywhere: about the marked body alone."""
         self._each(lambda i: self.each[i].update_foreground(everywhere), self.present)
 
-    def renew_before(self, looks_round: bool) -> None:
-        """Renew what stands before each background; looks_round: everywhere, where something may have been uncovered."""
-        self._each(lambda i: self._renew_before(i, looks_round), self.present)
+    def renew_before(self, searches_everywhere: bool) -> None:
+        """Updates the foreground masks. searches_everywhere: in whole pictures, and with a search for ghosts."""
+        self._each(lambda i: self._renew_before(i, searches_everywhere), self.present)
 
-    def _renew_before(self, i: int, looks_round: bool) -> None:
-        self.each[i].update_foreground(everywhere=looks_round)
-        if looks_round:
+    def _renew_before(self, i: int, searches_everywhere: bool) -> None:
+        self.each[i].update_foreground(everywhere=searches_everywhere)
+        if searches_everywhere:
             self._remove_ghosts_of(i)
 
     def remove_ghosts(self) -> None:
@@ -189,27 +189,27 @@ class CameraViews:
             arms[y0:y1, x0:x1] = (ids > 0) & ((part == LEFT_ARM) | (part == RIGHT_ARM))
         camera.background.remove_ghosts(camera.picture, camera.foreground, camera.drawn, arms)
 
-    def prepared(
-        self, state: MotionState, looks_round: bool, also: Callable[[int], T]
+    def prepare(
+        self, state: MotionState, searches_everywhere: bool, also: Callable[[int], T]
     ) -> tuple[list[View], list[T]]:
-        """`mark_body`, `renew_before` and `classified` of a predicted body, and what `also` says of each camera's index then:
-        each camera all in one go, as threads that wait for each other after every step gain nothing."""
+        """Runs `mark_body`, `renew_before`, `classify` and `also` of a predicted body, each camera in one task:
+        synchronising threads after every stage gains nothing."""
 
-        def prepare(i: int) -> tuple[View | None, T]:
+        def process(i: int) -> tuple[View | None, T]:
             self._mark(i, state)
-            self._renew_before(i, looks_round)
-            seen = also(i)
-            return self._classified(i, state, marked=True), seen
+            self._renew_before(i, searches_everywhere)
+            result = also(i)
+            return self._classify(i, state, marked=True), result
 
-        done = self._each(prepare, self.present)
-        return [view for view, _ in done if view is not None], [one for _, one in done]
+        done = self._each(process, self.present)
+        return [view for view, _ in done if view is not None], [result for _, result in done]
 
-    def classified(self, state: MotionState) -> list[View]:
-        """Every present picture by the regions of the body as predicted, which is drawn last into each."""
-        views = self._each(lambda i: self._classified(i, state), self.present)
-        return [one for one in views if one is not None]
+    def classify(self, state: MotionState) -> list[View]:
+        """Classifies every present picture into regions about the predicted body, and renders the body into each."""
+        views = self._each(lambda i: self._classify(i, state), self.present)
+        return [view for view in views if view is not None]
 
-    def _classified(self, i: int, state: MotionState, marked: bool = False) -> View | None:
+    def _classify(self, i: int, state: MotionState, marked: bool = False) -> View | None:
         """marked: the state was drawn last, to mark the body."""
         p = self._params
         drawing, camera, dt_s = self.fitter.drawings[i], self.each[i], self.present[i]
@@ -268,7 +268,7 @@ class CameraViews:
             if not camera.background.is_new:
                 cv2.dilate(
                     stands(camera.foreground).astype(np.uint8),
-                    camera.beside,
+                    camera.body_margin,
                     dst=camera.body,
                 )
 
@@ -289,16 +289,16 @@ class CameraViews:
 
     def outline_contrast(self) -> float:
         """How much steeper the pictures are along the marked body's outline than beside it; about 1 where nobody is."""
-        on = beside = 0.0
+        on_outline = off_outline = 0.0
         for i in self.present:
             camera = self.each[i]
             if camera.drawn.any():
                 edges = brightness_edges(camera.picture)
-                wide = np.asarray(cv2.dilate(camera.drawn, _ASIDE), np.uint8)
-                narrow = np.asarray(cv2.erode(camera.drawn, _ASIDE), np.uint8)
-                on += float(edges[_outline(camera.drawn)].mean())
-                beside += float(edges[_outline(wide) | _outline(narrow)].mean())
-        return on / max(beside, 1e-3)
+                wide = np.asarray(cv2.dilate(camera.drawn, _OUTLINE_OFFSET), np.uint8)
+                narrow = np.asarray(cv2.erode(camera.drawn, _OUTLINE_OFFSET), np.uint8)
+                on_outline += float(edges[_outline(camera.drawn)].mean())
+                off_outline += float(edges[_outline(wide) | _outline(narrow)].mean())
+        return on_outline / max(off_outline, 1e-3)
 
     def seed_background(self) -> None:
         """Take what is beside the marked body for the background."""
@@ -322,4 +322,4 @@ class CameraViews:
 
 
 def _outline(mask: Bytes) -> NDArray[np.bool_]:
-    return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _LINE) > 0)
+    return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE_WIDTH) > 0)

@@ -5,7 +5,7 @@ import numpy as np
 from mocapd.body.areas import ARM_AREAS, N_AREAS, Area
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_result import Fit
-from mocapd.tracking.tracking_state import faded
+from mocapd.tracking.tracking_state import confidence_fade
 from mocapd.types import Floats
 
 _ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) at which a joint is well seen
@@ -55,4 +55,4 @@ def joint_confidence(
     share = matched / np.maximum(asked, 1.0)
     enough = np.minimum(matched / (_ENOUGH_PX * max(n_cameras, 1)), 1.0)
     out = np.minimum(1.25 * share, 1.0) * enough / (1.0 + (uncertainty_m / _HALF_M) ** 2)
-    return np.asarray(out * faded(away_s))
+    return np.asarray(out * confidence_fade(away_s))

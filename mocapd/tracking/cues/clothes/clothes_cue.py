@@ -12,16 +12,20 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays
 from mocapd.fit.view import View
-from mocapd.tracking.base import Probe, no_time_passes
-from mocapd.tracking.cues.clothes.clothes_fits import ClothesFits, ClothesFound, Observed
+from mocapd.tracking.base import Probe, frozen_clock
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.cues.keypoints.joint_views import unwatched
+from mocapd.tracking.cues.clothes.clothes_solver import (
+    ClothesEstimate,
+    ClothesObservation,
+    ClothesSolver,
+)
+from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.ticks import Ticks
-from mocapd.tracking.track_state import Proportions, TrackState
+from mocapd.tracking.track_state import BodyShapeEstimate, TrackState
 from mocapd.types import Bytes, FrameSet, Rig
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
@@ -29,7 +33,7 @@ _DEPTHS, _JOINTS = 0, 1  # what alternates; also the look is learned in frames t
 
 
 class ClothesCue:
-    """Remembers each camera's background and the colours of each region, and who may be coming in."""
+    """Keeps each camera's background, the appearance of each region, and a search in progress."""
 
     name = "clothes"
 
@@ -40,166 +44,177 @@ class ClothesCue:
         params: ClothesParams | None = None,
         cascade: CascadeArrays | None = None,
         each: Each = in_turn,
-        now_ns: Callable[[], int] = no_time_passes,
+        now_ns: Callable[[], int] = frozen_clock,
     ) -> None:
-        """cascade, each: see `ClothesFits`; now_ns: see `registry.Resources`."""
+        """cascade, each: see `ClothesSolver`; now_ns: see `registry.Resources`."""
         self.params = p = params if params is not None else ClothesParams()
-        self._fits = fits = ClothesFits(rig, stature_m, p, cascade, each)
-        self.cameras, self.model = fits.cameras, fits.model
-        self._find = PersonSearch(
-            fits.silhouettes, fits.terms.floor, fits.terms.joints, fits.cameras, rig.cameras, p.start,
-            p.keypoint_start, p.motion_watch, now_ns,
+        self._solver = solver = ClothesSolver(rig, stature_m, p, cascade, each)
+        self.cameras, self.model = solver.cameras, solver.model
+        self._search = PersonSearch(
+            solver.silhouettes, solver.terms.floor, solver.terms.joints, solver.cameras, rig.cameras, p.start,
+            p.keypoint_start, p.motion_monitor, now_ns,
         )  # fmt: skip
         self.reset()
 
     @property
     def fitter(self) -> Fitter:
         """Of the wearer's present look."""
-        return self._fits.fitter
+        return self._solver.fitter
 
     @property
     def work(self) -> OptionalWork:
         """What optional work is done."""
-        return self._fits.work
+        return self._solver.work
 
     @work.setter
     def work(self, work: OptionalWork) -> None:
-        self._fits.work = work
+        self._solver.work = work
 
     def reset(self) -> None:
         """Forget background and look."""
-        self._fits.reset()
-        self._find.reset()
+        self._solver.reset()
+        self._search.reset()
         self._ticks = Ticks(1, 1, 1)
 
     def rehearse(self) -> None:
-        """See `ClothesFits`."""
-        self._fits.rehearse()
+        """See `ClothesSolver`."""
+        self._solver.rehearse()
         self.reset()
 
     def take(self, pictures: Pictures, ticks: Ticks, /) -> None:
         """See Cue."""
         self._ticks = ticks
-        self._find.times.came(pictures.t_ns)
+        self._search.times.on_frame_set(pictures.t_ns)
         self.cameras.take({i: pictures.each[i].bgr for i in pictures.present}, pictures.present)
 
     def learn_room(self, frames: Iterable[FrameSet], pictures: Pictures) -> None:
         """See `RoomLearner`."""
-        shown: dict[int, list[Bytes]] = {}
+        pictures_bgr: dict[int, list[Bytes]] = {}
         times_s: dict[int, list[float]] = {}
-        for one in frames:
-            for i, late_s in pictures.look(one).items():
-                shown.setdefault(i, []).append(pictures.each[i].bgr.copy())
-                times_s.setdefault(i, []).append(seconds(one.t_ns) + late_s)
-        self.cameras.know_room(shown, {i: np.array(when_s) for i, when_s in times_s.items()})
+        for frame_set in frames:
+            for i, late_s in pictures.load(frame_set).items():
+                pictures_bgr.setdefault(i, []).append(pictures.each[i].bgr.copy())
+                times_s.setdefault(i, []).append(seconds(frame_set.t_ns) + late_s)
+        self.cameras.learn_room(
+            pictures_bgr, {i: np.array(when_s) for i, when_s in times_s.items()}
+        )
 
     # --- with a body ---
 
     def observe(
-        self, predicted: MotionState, t_ns: int, legs_since_ns: int | None, carried: bool
-    ) -> Observed | None:
-        """The pictures by the regions of the predicted body; None where its look or the background is not known yet.
+        self, predicted: MotionState, t_ns: int, legs_since_ns: int | None, shirt_carries: bool
+    ) -> ClothesObservation | None:
+        """Classifies the pictures about the predicted body; None without a background or an appearance model.
 
-        carried: whether the shirt carried trunk and arms a moment ago: fewer looks at the joints will do then, and none
-        while the legs are new, which were just found elsewhere.
+        shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then detected less often, and not for
+        new legs.
         """
         p = self.params
-        if self.cameras.are_new or not self.cameras.know_appearance:
+        if self.cameras.are_new or not self.cameras.has_appearance:
             return None
-        if carried and self._rests_legs:
+        if shirt_carries and self._skips_legs:
             return None
-        if carried:
+        if shirt_carries:
             is_new = legs_since_ns is None or t_ns - legs_since_ns <= nanoseconds(
                 p.guided_joint_after_s
             )
-            looks = (
-                self._ticks.due(p.guided_joints_s * self._fits.work.network, TICK_S) and not is_new
+            detects = (
+                self._ticks.due(p.guided_joints_s * self._solver.work.network, TICK_S)
+                and not is_new
             )
         else:
-            looks = self._ticks.alternates(2 * self._fits.work.network, _JOINTS)
-        joints, fitter = self._fits.terms.joints, self.fitter
-        watch = joints.watch(fitter, predicted, self.cameras) if looks else unwatched
+            detects = self._ticks.alternates(2 * self._solver.work.network, _JOINTS)
+        joints, fitter = self._solver.terms.joints, self.fitter
+        detect = joints.detector(fitter, predicted, self.cameras) if detects else no_detection
         rays: list[JointRays | None]
-        views, rays = self.cameras.prepared(predicted, self._fits.looks_round(self._ticks), watch)
-        return Observed(predicted, views, joints.term(self.model, rays))
-
-    def whole(
-        self, known: TrackState, seen: Observed, dt_s: float, frames: FrameSet, probe: Probe
-    ) -> ClothesFound | None:
-        """The whole body, dt_s after it was known; None where too little of it is seen."""
-        return self._fits.whole(
-            known, seen, dt_s, frames, self._ticks, self._measures_depths, probe
+        views, rays = self.cameras.prepare(
+            predicted, self._solver.searches_everywhere(self._ticks), detect
         )
+        return ClothesObservation(predicted, views, joints.term(self.model, rays))
 
-    def below(
+    def fit_whole_body(
         self,
-        known: TrackState,
-        start: MotionState,
-        seen: Observed | None,
+        state: TrackState,
+        observed: ClothesObservation,
         dt_s: float,
         frames: FrameSet,
         probe: Probe,
-    ) -> ClothesFound | None:
-        """Legs and head of a body whose trunk and arms, in `start`, the shirt carries; dt_s after it was known."""
-        self._find.give_up()
-        if seen is None and self._rests_legs and known.whole is not None:
-            return ClothesFound(known.whole, start, (), ())
-        return self._fits.below(known, start, seen, dt_s, frames, self._ticks, probe)
+    ) -> ClothesEstimate | None:
+        """Fits the whole body, dt_s after `state`; None if too little of it is visible."""
+        return self._solver.fit_whole_body(
+            state, observed, dt_s, frames, self._ticks, self._measures_depths, probe
+        )
+
+    def fit_lower_body(
+        self,
+        state: TrackState,
+        start: MotionState,
+        observed: ClothesObservation | None,
+        dt_s: float,
+        frames: FrameSet,
+        probe: Probe,
+    ) -> ClothesEstimate | None:
+        """Fits legs and head of a body whose trunk and arms, in `start`, come from the shirt; dt_s after `state`."""
+        self._search.give_up()
+        if observed is None and self._skips_legs and state.whole is not None:
+            return ClothesEstimate(state.whole, start, (), ())
+        return self._solver.fit_lower_body(state, start, observed, dt_s, frames, self._ticks, probe)
 
     @property
     def _measures_depths(self) -> bool:
         """Whether this frame does, where cameras look from one side; others look for joints, and learn."""
-        return self._ticks.alternates(2 * self._fits.work.depths, _DEPTHS)
+        return self._ticks.alternates(2 * self._solver.work.depths, _DEPTHS)
 
     @property
-    def _rests_legs(self) -> bool:
+    def _skips_legs(self) -> bool:
         """Whether legs and head below a trunk that the shirt carries go on as they moved."""
-        legs = self._fits.work.legs
+        legs = self._solver.work.legs
         return legs > 1 and not self._ticks.alternates(legs, 0)
 
     # --- from nothing ---
 
-    def search(self, wearer: Proportions, t_ns: int) -> ClothesFound | None:
-        """Look for somebody who stands before the background."""
-        found = self._find.look(wearer.factors, wearer.information, t_ns)
+    def search(self, wearer: BodyShapeEstimate, t_ns: int) -> ClothesEstimate | None:
+        """Searches for a person in the foreground."""
+        found = self._search.look(wearer.factors, wearer.information, t_ns)
         if found is None:
             return None
         fit, names = found
         self.cameras.mark_body(fit.state)
         self.cameras.remove_ghosts()
-        self.cameras.doubt_background()
-        self._fits.wardrobe.learn_first(fit.state, self.cameras)
-        return ClothesFound(fit, fit.state, (), names)
+        self.cameras.distrust_background()
+        self._solver.appearance.learn_first(fit.state, self.cameras)
+        return ClothesEstimate(fit, fit.state, (), names)
 
-    def begin(self, there: MotionState, frames: FrameSet) -> ClothesFound | None:
-        """Begin from a body as it was known elsewhere, if the pictures have its outline."""
-        return self._fits.begin(there, frames, self._ticks)
+    def start_from(self, body: MotionState, frames: FrameSet) -> ClothesEstimate | None:
+        """Starts from a body of another tracker, if the pictures show its outline."""
+        return self._solver.start_from(body, frames, self._ticks)
 
     def lost_reason(self, t_ns: int) -> LostReason | None:
-        """Why nobody is found, where that can be told."""
-        return self._find.lost_reason(t_ns)
+        """Why no person is tracked, if known."""
+        return self._search.lost_reason(t_ns)
 
     # --- learning ---
 
-    def learn(self, found: ClothesFound | None, nobody: bool, carried: bool) -> None:
-        """The look of a body that agrees well, and the background beside it, or everywhere where nobody is known."""
-        p, cameras, looks = self.params, self.cameras, self._fits.work.looks
+    def learn(self, found: ClothesEstimate | None, is_lost: bool, shirt_carries: bool) -> None:
+        """Updates the appearance from a body that fits well, and the background beside it, or everywhere while the track
+        is lost."""
+        p, cameras, interval = self.params, self.cameras, self._solver.work.learning
         if self._ticks.count == 0:
             return  # more frames do not teach faster
-        if nobody and not self._ticks.due(p.absorb_s):
+        if is_lost and not self._ticks.due(p.absorb_s):
             cameras.mark_unknown()  # what stays for long is furniture that was moved
-        elif nobody:
+        elif is_lost:
             cameras.mark_body(None)
         agrees = found is not None and found.fit.explained >= p.learn_explained
         views: Sequence[View] = ()
-        if found is not None and carried:
+        if found is not None and shirt_carries:
             # with two cameras: the look is learned in one of them, in two of four frames
             views = [
                 view
                 for k, view in enumerate(found.views)
-                if self._ticks.due(p.guided_look_s * looks, k * TICK_S)
+                if self._ticks.due(p.guided_look_s * interval, k * TICK_S)
             ]
-        elif found is not None and self._ticks.alternates(2 * looks, _JOINTS):
+        elif found is not None and self._ticks.alternates(2 * interval, _JOINTS):
             # depths and arms that are searched for make their frames long enough
             views = found.views
         cameras.learn(

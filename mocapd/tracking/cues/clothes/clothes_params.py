@@ -1,4 +1,4 @@
-"""The numbers of the tracker without a shirt: its own decisions and those of its parts, with units and reasons."""
+"""Parameters of the clothes cue and its parts, with units and reasons."""
 
 from dataclasses import dataclass, field
 
@@ -8,12 +8,12 @@ from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.fit.terms.planted_term import PlantedParams
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
-from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
+from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
 from mocapd.tracking.hypotheses.foot_heading import FootHeadingParams
 from mocapd.tracking.hypotheses.front_back_flip import FlipParams
+from mocapd.tracking.hypotheses.keypoint_starts import KeypointPoseParams
 from mocapd.tracking.hypotheses.limb_swap import LimbSwapParams
 from mocapd.tracking.hypotheses.pelvis_heading import PelvisHeadingParams
-from mocapd.tracking.hypotheses.seen_pose import SeenPoseParams
 from mocapd.tracking.planted_feet import PlantedFeetParams
 from mocapd.tracking.velocity import VelocityParams
 from mocapd.vision.room_background import BackgroundParams
@@ -21,7 +21,7 @@ from mocapd.vision.room_background import BackgroundParams
 
 @dataclass(frozen=True, slots=True)
 class StartParams:
-    """When somebody before the background is taken for a person, and how the first pose is found."""
+    """When a foreground blob counts as a person, and how the first pose is found."""
 
     least_px: int = 400  # of a blob, in work pixels
     least_height_px: int = 50
@@ -53,7 +53,7 @@ class StartParams:
 
 @dataclass(frozen=True, slots=True)
 class KeypointStartParams:
-    """When joints and a silhouette are somebody."""
+    """When keypoints and a silhouette count as a person."""
 
     least_height_px: int = 16  # of a piece: who lies is low [work px]
     step_m: float = 0.1  # from one distance that is tried to the next
@@ -78,8 +78,8 @@ class KeypointStartParams:
 
 
 @dataclass(frozen=True, slots=True)
-class MotionWatchParams:
-    """When something that moves must be somebody who is not found."""
+class MotionMonitorParams:
+    """When motion must come from a person who is not found."""
 
     least_px: int = 500  # of all that is before the background of a camera, in work pixels
     most_share: float = 0.6  # of the picture: more is another light
@@ -98,7 +98,7 @@ class MotionWatchParams:
 
 @dataclass(frozen=True, slots=True)
 class ClothesParams:
-    """Parameters of the tracker without a shirt."""
+    """Parameters of the clothes cue."""
 
     fit: FitParams = field(default_factory=lambda: FitParams(iterations=6))
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)
@@ -111,15 +111,15 @@ class ClothesParams:
     appearance: AppearanceParams = field(default_factory=AppearanceParams)
     start: StartParams = field(default_factory=StartParams)
     keypoint_start: KeypointStartParams = field(default_factory=KeypointStartParams)
-    motion_watch: MotionWatchParams = field(default_factory=MotionWatchParams)
+    motion_monitor: MotionMonitorParams = field(default_factory=MotionMonitorParams)
     floor: FloorParams = field(default_factory=FloorParams)
     planted: PlantedParams = field(default_factory=PlantedParams)
     feet: PlantedFeetParams = field(default_factory=PlantedFeetParams)
     flip: FlipParams = field(default_factory=FlipParams)
     limb_swap: LimbSwapParams = field(default_factory=LimbSwapParams)
     depths: StereoDepthParams = field(default_factory=StereoDepthParams)
-    joints: JointViewParams = field(default_factory=JointViewParams)
-    seen_pose: SeenPoseParams = field(default_factory=SeenPoseParams)
+    joints: KeypointDetectionParams = field(default_factory=KeypointDetectionParams)
+    keypoint_poses: KeypointPoseParams = field(default_factory=KeypointPoseParams)
     pelvis_heading: PelvisHeadingParams = field(default_factory=PelvisHeadingParams)
     foot_heading: FootHeadingParams = field(default_factory=FootHeadingParams)
     distances: StereoMatchParams = field(

@@ -9,8 +9,8 @@ from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.cues.keypoints.joint_views import JointViews
-from mocapd.tracking.cues.stereo.texture_distance import texture_distances
+from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
+from mocapd.tracking.cues.stereo.stereo_distances import stereo_distance_terms
 from mocapd.types import FrameSet
 
 
@@ -20,18 +20,20 @@ class PoseTerms:
     def __init__(self, model: BodyModel, cameras: int, params: ClothesParams) -> None:
         """cameras: how many there are."""
         self.floor = FloorTerm(model, params.floor)
-        self.joints = JointViews(cameras, model.stature_m, params.joints)
+        self.joints = KeypointDetectors(cameras, model.stature_m, params.joints)
         self._params = params.distances
 
-    def measured(
+    def measure(
         self,
         fitter: Fitter,
         drawn: MotionState,
         views: Sequence[View],
         frames: FrameSet,
-        turn: int,
+        frame_index: int,
         only: Collection[int] = (),
     ) -> tuple[Term, ...]:
         """The floor, and distances of all regions or of these only, of a body that was drawn last into every view."""
-        distances = texture_distances(fitter, drawn, views, frames, turn, self._params, only)
+        distances = stereo_distance_terms(
+            fitter, drawn, views, frames, frame_index, self._params, only
+        )
         return (self.floor, *distances)

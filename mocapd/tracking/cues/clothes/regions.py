@@ -43,19 +43,19 @@ class Band(IntEnum):
 
 
 def region_labels(model: BodyModel) -> SurfaceLabels:
-    """Of a whole body with clothes to the hips and with long sleeves: its regions. Raises ValueError as `worn_labels`."""
+    """Of a whole body with clothes to the hips and with long sleeves: its regions. Raises ValueError as `merged_labels`."""
     worn = np.arange(1 + max(Band), dtype=np.uint8)
     worn[[Band.LOW_HIPS, Band.HIGH_HIPS]] = Region.LEG
     worn[[Band.WAIST, Band.LOW_SLEEVE, Band.HIGH_SLEEVE]] = Region.TRUNK
-    return worn_labels(model, worn)
+    return merged_labels(model, worn)
 
 
 def silhouette_labels(model: BodyModel) -> SurfaceLabels:
-    """Of a whole body as it is seen before its background: one. Raises ValueError as `worn_labels`."""
-    return worn_labels(model, np.ones(1 + max(Band), np.uint8))
+    """Of a whole body as it is seen before its background: one. Raises ValueError as `merged_labels`."""
+    return merged_labels(model, np.ones(1 + max(Band), np.uint8))
 
 
-def worn_labels(model: BodyModel, worn: Sequence[int] | NDArray[np.uint8]) -> SurfaceLabels:
+def merged_labels(model: BodyModel, worn: Sequence[int] | NDArray[np.uint8]) -> SurfaceLabels:
     """Of a whole body: that of each region or band, by its number. Raises ValueError for a body without legs of its own."""
     if not model.space.whole:
         raise ValueError("a body of the upper pose space has no legs to be told apart")

@@ -1,1 +1,1 @@
-"""Faces: they tell which way somebody looks."""
+"""Face detection as evidence of the facing direction."""

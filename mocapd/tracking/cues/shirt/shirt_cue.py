@@ -23,12 +23,18 @@ from mocapd.shirt.segmentation.rig_segmenter import RigSegmenter
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.shirt import shirt_search as detection
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
-from mocapd.tracking.cues.stereo.texture_distance import texture_distances
+from mocapd.tracking.cues.stereo.stereo_distances import stereo_distance_terms
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.prediction_prior import prediction_prior
 from mocapd.tracking.ticks import Ticks
-from mocapd.tracking.track_state import BEGUN_S, Proportions, TrackState, in_t_pose, upper_of
+from mocapd.tracking.track_state import (
+    NEW_BODY_PRIOR_S,
+    BodyShapeEstimate,
+    TrackState,
+    t_pose_state,
+    upper_body_state,
+)
 from mocapd.tracking.velocity import velocity_between
 from mocapd.types import Bytes, Floats, FrameSet, Rig
 from mocapd.vision.room_background import RoomBackground
@@ -37,9 +43,12 @@ _LONGEST_TICKS = 8  # after a pause no more is learned from a frame set than aft
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ShirtFound:
-    """Trunk and arms as the shirt places them, in the views that show it. taught_s: see `Proportions`; jumped: sides whose
-    arm was found elsewhere than predicted; redraw: whether the body was not drawn last as it was fitted."""
+class ShirtEstimate:
+    """Trunk and arms from the shirt, with the views that show it.
+
+    taught_s: see `BodyShapeEstimate`; jumped: sides whose arm was found away from its prediction; redraw: True if the
+    last rendered body differs from the fit.
+    """
 
     fit: Fit
     motion: MotionState
@@ -50,7 +59,7 @@ class ShirtFound:
 
 
 class ShirtCue:
-    """Remembers what each camera learned of light, colours and background, and when it may search again."""
+    """Keeps each camera's light, colours and background, and the time of the next search."""
 
     name = "shirt"
 
@@ -86,10 +95,10 @@ class ShirtCue:
         """Compile or load the kernels that only rare frames reach."""
         w, h = self.segmenters.each[0].size
         nothing = np.zeros((h, w), np.uint8)
-        known = initial_information(self.model.space)
-        wearer = Proportions(np.ones(self.model.n_shape), known, 0.0)
-        somebody = in_t_pose(self.model, self.model.rest_m[0].copy(), wearer)
-        self._arms.rehearse(somebody, [View(0, (0, 0, w, h), nothing, nothing, 0.0)])
+        information = initial_information(self.model.space)
+        wearer = BodyShapeEstimate(np.ones(self.model.n_shape), information, 0.0)
+        body = t_pose_state(self.model, self.model.rest_m[0].copy(), wearer)
+        self._arms.rehearse(body, [View(0, (0, 0, w, h), nothing, nothing, 0.0)])
 
     def reset(self) -> None:
         """Forget light and background."""
@@ -106,82 +115,82 @@ class ShirtCue:
 
     def follow(
         self,
-        known: TrackState,
+        previous: TrackState,
         predicted: MotionState,
         dt_s: float,
         present: dict[int, float],
         frames: FrameSet,
-        turn: int,
+        frame_index: int,
         probe: Probe,
-    ) -> ShirtFound | None:
-        """Trunk and arms of a body that the shirt carried a moment ago; None where the shirt is not seen there.
+    ) -> ShirtEstimate | None:
+        """Tracks trunk and arms from the previous state; None if the shirt is not visible there.
 
-        predicted: the whole body, dt_s after it was known.
+        predicted: the whole body, dt_s after `previous`.
         """
-        p, fitter, last = self.params, self.fitter, known.trunk
+        p, fitter, last = self.params, self.fitter, previous.trunk
         assert last is not None
         uncertain = tuple(side for side in SIDES if is_uncertain(side, last, p.limbs))
-        start = upper_of(predicted, self.model)
+        start = upper_body_state(predicted, self.model)
         views = self.segmenters.views(start, present, uncertain)
         probe("shirt.classify")
         if not views:
             return None
         learning = (
             p.shape.learn
-            and known.taught_s < p.shape.learning_s
+            and previous.taught_s < p.shape.learning_s
             and last.match > p.shape.least_match
         )
         motion = prediction_prior(
             fitter, last, start.velocity, dt_s, p.limbs.uncertain_arm, p.motion
         )
-        terms = texture_distances(fitter, start, views, frames, turn, p.distances)
+        terms = stereo_distance_terms(fitter, start, views, frames, frame_index, p.distances)
         fit = fitter.fit(
             start, views, dt_s, p.fit.iterations - self.work.fewer_iterations, learning, rendered=True,
             fine=min(self.work.fine, p.fit.fine_iterations), motion=motion, terms=terms,
         )  # fmt: skip
         probe("shirt.fit")
-        before = fit
+        unsearched = fit
         jumped: tuple[str, ...] = ()
-        if self._ticks.due(self.work.other_poses * TICK_S):
-            fit, jumped = self._arms.improve(fit, views, dt_s, turn, terms, learning)
+        if self._ticks.due(self.work.hypotheses * TICK_S):
+            fit, jumped = self._arms.improve(fit, views, dt_s, frame_index, terms, learning)
         probe("shirt.arms")
-        if not self._is_seen(fit):
+        if not self._is_visible(fit):
             return None
-        state, taught_s = fit.state, known.taught_s
+        state, taught_s = fit.state, previous.taught_s
         if learning and fit.match > p.shape.least_match:
             gained = fitter.shape_information(fit.H) * (p.shape.gain * dt_s / TICK_S)
             state = replace(state, information=state.information + gained)
             taught_s += dt_s
         velocity = velocity_between(
-            self.model, upper_of(known.motion, self.model), fit, dt_s,
+            self.model, upper_body_state(previous.motion, self.model), fit, dt_s,
             [self._columns[side] for side in jumped], p.velocity,
         )  # fmt: skip
-        redraw = fit is not before or any(is_uncertain(s, before, p.limbs) for s in SIDES)
+        redraw = fit is not unsearched or any(is_uncertain(s, unsearched, p.limbs) for s in SIDES)
         state = replace(state, velocity=velocity)
-        return ShirtFound(fit, state, tuple(views), taught_s, jumped, redraw)
+        return ShirtEstimate(fit, state, tuple(views), taught_s, jumped, redraw)
 
-    def begin(
-        self, body: MotionState, taught_s: float, present: dict[int, float], turn: int
-    ) -> ShirtFound | None:
-        """Trunk and arms of a body that other cues place here, if the shirt is seen there."""
-        return self._fitted(upper_of(body, self.model), taught_s, present, turn)
+    def start_from(
+        self, body: MotionState, taught_s: float, present: dict[int, float], frame_index: int
+    ) -> ShirtEstimate | None:
+        """Fits trunk and arms at a body from other cues, if the shirt is visible there."""
+        return self._fit(upper_body_state(body, self.model), taught_s, present, frame_index)
 
-    def _fitted(
+    def _fit(
         self,
         start: MotionState,
         taught_s: float,
         present: dict[int, float],
-        turn: int,
-    ) -> ShirtFound | None:
+        frame_index: int,
+    ) -> ShirtEstimate | None:
         views = self.segmenters.views(start, present)
         if not views:
             return None
-        fit = self.fitter.fit(start, views, BEGUN_S, self.params.fit.iterations)
-        fit, _ = self._arms.improve(fit, views, BEGUN_S, turn)
+        fit = self.fitter.fit(start, views, NEW_BODY_PRIOR_S, self.params.fit.iterations)
+        fit, _ = self._arms.improve(fit, views, NEW_BODY_PRIOR_S, frame_index)
         if not self._is_acceptable(fit):
             return None
         still = replace(fit.state, velocity=np.zeros(self.model.n_pose))
-        return ShirtFound(fit, still, tuple(views), taught_s)
+        return ShirtEstimate(fit, still, tuple(views), taught_s)
 
     # --- from nothing ---
 
@@ -191,33 +200,37 @@ class ShirtCue:
 
     def search(
         self,
-        wearer: Proportions,
+        wearer: BodyShapeEstimate,
         present: dict[int, float],
         t_ns: int,
         pause_s: float,
         better_than: float,
-        turn: int,
-    ) -> ShirtFound | None:
-        """Look for the wearer in all of the pictures; what the segmenters know of the light stays as it was unless somebody
-        is found whose match is better. pause_s: until the next look after one that failed [s]."""
-        before = [segmenter.memory.appearance for segmenter in self.segmenters.each]
-        found = self._found(wearer, present, turn)
+        frame_index: int,
+    ) -> ShirtEstimate | None:
+        """Searches all pictures for the shirt. The light estimate changes only if a fit has a better match than
+        `better_than`; pause_s: until the next search after a failure [s]."""
+        appearances = [segmenter.memory.appearance for segmenter in self.segmenters.each]
+        found = self._detect(wearer, present, frame_index)
         if found is not None and found.fit.match > better_than:
             self._next_search_ns = t_ns
             return found
         self._next_search_ns = t_ns + nanoseconds(pause_s)
-        for segmenter, appearance in zip(self.segmenters.each, before, strict=True):
+        for segmenter, appearance in zip(self.segmenters.each, appearances, strict=True):
             segmenter.memory.appearance = appearance
         return None
 
-    def _found(
-        self, wearer: Proportions, present: dict[int, float], turn: int
-    ) -> ShirtFound | None:
+    def _detect(
+        self, wearer: BodyShapeEstimate, present: dict[int, float], frame_index: int
+    ) -> ShirtEstimate | None:
         p, s = self.params, self.model.n_shape
         sightings = [
-            one
+            sighting
             for i in present
-            if (one := detection.sight(i, self.segmenters.each[i], self._database, p.neighbours))
+            if (
+                sighting := detection.detect_shirt(
+                    i, self.segmenters.each[i], self._database, p.neighbours
+                )
+            )
             is not None
         ]
         states = detection.hypotheses(
@@ -226,19 +239,19 @@ class ShirtCue:
         )  # fmt: skip
         flat = [
             View(
-                one.index, one.found.roi, one.found.ids,
-                np.full(one.found.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8),
-                present[one.index],
+                sighting.index, sighting.candidate.roi, sighting.candidate.ids,
+                np.full(sighting.candidate.ids.shape, int(255 * p.segmentation.soft_unknown), np.uint8),
+                present[sighting.index],
             )
-            for one in sightings
+            for sighting in sightings
         ]  # fmt: skip
         fit = detection.best_fit(self.fitter, states, flat)
         if fit is None:
             return None
-        for one in sightings:
-            self.segmenters.each[one.index].set_light(one.found.W)
+        for sighting in sightings:
+            self.segmenters.each[sighting.index].set_light(sighting.candidate.W)
         # read the pictures again, now with the pose as prior, and fit once more
-        return self._fitted(fit.state, wearer.taught_s, present, turn)
+        return self._fit(fit.state, wearer.taught_s, present, frame_index)
 
     # --- what is believed and learned ---
 
@@ -252,7 +265,7 @@ class ShirtCue:
         ids = {name: view.ids.copy() for name, view in zip(names, views, strict=True)}
         return ids, {n: self.segmenters.roi_px(v) for n, v in zip(names, views, strict=True)}
 
-    def _is_seen(self, fit: Fit) -> bool:
+    def _is_visible(self, fit: Fit) -> bool:
         # every second pixel was counted
         p = self.params
         return fit.match >= p.live_match and 2.0 * float(fit.matched.sum()) >= p.min_shirt_px
@@ -266,13 +279,13 @@ class ShirtCue:
             and 2.0 * fit.matched.sum() >= p.min_shirt_px
         )
 
-    def learn(self, found: ShirtFound | None, present: dict[int, float], nobody: bool) -> None:
-        """Follow the light from trunk and arms as found, and its own backgrounds beside them; nobody: is known at all."""
-        every = 1 if found is None else self.work.looks
+    def learn(self, found: ShirtEstimate | None, present: dict[int, float], is_lost: bool) -> None:
+        """Updates light and colours from the fit, and the cue's own backgrounds beside it. is_lost: no body is tracked."""
+        every = 1 if found is None else self.work.learning
         if not self._ticks.due(every * TICK_S):
             return
         ticks = min(max(every, self._ticks.count), _LONGEST_TICKS)
         if found is not None:
             views, dt_s = list(found.views), ticks * TICK_S
             self.segmenters.learn_with(found.motion, found.fit, views, found.redraw, dt_s)
-        self.segmenters.learn_background(present, nobody, ticks)
+        self.segmenters.learn_background(present, is_lost, ticks)

@@ -1,4 +1,4 @@
-"""Find the wearer without a previous pose: locate the colours, ask the pose database, fit, judge."""
+"""Finds the wearer without a previous pose: colour detection, pose database look-up, fit, check."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,31 +24,31 @@ _LOOSE_S = 0.4  # a hypothesis is held as loosely as a prediction over this time
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShirtSighting:
-    """A shirt in one camera: where, and the poses that look most like it, with their map distances."""
+    """A shirt detection in one camera with its nearest poses of the database and their map distances."""
 
     index: int  # of the camera
-    found: ShirtCandidate
+    candidate: ShirtCandidate
     centre_px: Floats  # full resolution
     side_px: float
     poses: np.ndarray
     distances: Floats
 
 
-def sight(
+def detect_shirt(
     index: int, segmenter: CameraSegmenter, database: PoseDatabase, neighbours: int
 ) -> ShirtSighting | None:
-    """Look for the shirt in one camera's present picture; neighbours: poses asked for."""
-    found = segmenter.find(WINDOWS)
-    if found is None:
+    """Detects the shirt in one camera's present picture; neighbours: number of poses to look up."""
+    candidate = segmenter.find(WINDOWS)
+    if candidate is None:
         return None
-    id_map, scale, (cx, cy) = crop_id_map(found.ids)
+    id_map, scale, (cx, cy) = crop_id_map(candidate.ids)
     poses, distances = database.nearest(id_map, neighbours)
     if len(poses) == 0:
         return None
-    work = np.array([cx + found.roi[0], cy + found.roi[1]])
+    work = np.array([cx + candidate.roi[0], cy + candidate.roi[1]])
     return ShirtSighting(
         index,
-        found,
+        candidate,
         (work + 0.5) * segmenter.image_scale - 0.5,
         scale * SIZE * segmenter.image_scale,
         poses,
@@ -70,9 +70,9 @@ def hypotheses(
     """
     place: Floats | None = None
     if len(sightings) > 1:
-        seen = [cameras[s.index] for s in sightings]
-        xy = np.array([normalised(c, s.centre_px) for c, s in zip(seen, sightings, strict=True)])
-        point, residual_m = triangulate(seen, xy)
+        seen_by = [cameras[s.index] for s in sightings]
+        xy = np.array([normalised(c, s.centre_px) for c, s in zip(seen_by, sightings, strict=True)])
+        point, residual_m = triangulate(seen_by, xy)
         if np.isfinite(point).all() and np.max(residual_m) < _APART_M:
             place = point
     out = []
@@ -81,17 +81,17 @@ def hypotheses(
         view = camera_from_view(camera, s.centre_px)
         world_from_camera_xyzw = rotations.from_matrix(camera.R.T)
         for i in range(len(s.poses)):
-            one, distance = s.poses[i : i + 1], s.distances[i : i + 1]
+            pose, distance = s.poses[i : i + 1], s.distances[i : i + 1]
             side_rad = s.side_px / camera.K[0, 0]
-            in_view = database.root_in_view(one, distance, side_rad)
+            in_view = database.root_in_view(pose, distance, side_rad)
             if place is not None:
                 _, ray = rays(camera, s.centre_px)
                 depth = float((place - centre(camera)) @ ray)
                 in_view = np.array([in_view[0], in_view[1], 0.0]) * depth / max(in_view[2], 0.1)
                 in_view[2] = depth
             root = camera.R.T @ (rotations.rotate(view, in_view) - camera.t_m)
-            local = database.local_xyzw[one[0]].astype(float)
-            turned = rotations.multiply(view, database.camera_from_root_xyzw[one[0]].astype(float))
+            local = database.local_xyzw[pose[0]].astype(float)
+            turned = rotations.multiply(view, database.camera_from_root_xyzw[pose[0]].astype(float))
             local[0] = rotations.canonical(rotations.multiply(world_from_camera_xyzw, turned))
             out.append(MotionState(root, local, np.zeros(n_pose), factors, information))
     return out

@@ -1,1 +1,1 @@
-"""Distances between two cameras beside each other."""
+"""Stereo distances between two adjacent cameras."""

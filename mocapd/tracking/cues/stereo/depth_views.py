@@ -10,13 +10,13 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.stereo_depth import StereoDepthParams, StereoPair, stereo_depth_m
 from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
-from mocapd.tracking.cues.stereo.texture_distance import greys_of
+from mocapd.tracking.cues.stereo.stereo_distances import grey_pictures
 from mocapd.types import FrameSet
 
 _SURE = np.uint8(255)
 
 
-def with_depths(
+def add_stereo_depth(
     fitter: Fitter,
     predicted: MotionState,
     views: Sequence[View],
@@ -30,7 +30,7 @@ def with_depths(
     """
     if len(views) != 2 or not fitter.has_small_baseline(predicted, views):
         return list(views)
-    greys = greys_of(fitter, views, frames)
+    greys = grey_pictures(fitter, views, frames)
     out = []
     for mine, its in ((0, 1), (1, 0)):
         view, drawing = views[mine], fitter.drawings[views[mine].index]

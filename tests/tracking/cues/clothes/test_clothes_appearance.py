@@ -17,7 +17,7 @@ from mocapd.tracking.cues.clothes.appearance_kernels import (
     classify_regions,
     log_table,
 )
-from mocapd.tracking.cues.clothes.look import ALL_DIFFER, DressedFitters, look_of
+from mocapd.tracking.cues.clothes.region_merge import NO_MERGE, RegionSolverCache, choose_merge
 from mocapd.tracking.cues.clothes.regions import Band, Region
 from mocapd.types import Bytes, Singles
 from mocapd.vision.foreground_kernels import BEFORE, CLOTH_OR_SHADOW, SHADOW
@@ -76,14 +76,14 @@ def test_colours_overlap_as_they_are_alike() -> None:
 
 def test_a_long_sleeve_is_one_with_the_trunk_and_hands_stay_their_own() -> None:
     appearance, _, _ = learned()
-    look = look_of([appearance], 0.55)
+    look = choose_merge([appearance], 0.55)
     assert look[Region.FOREARM] == Region.TRUNK
     assert look[Region.HAND] == Region.HAND
     body = build_model(1.75, full_body())
-    fitters = DressedFitters(
+    fitters = RegionSolverCache(
         body, ring(2), [2, 2], FitParams(), LimbSearchParams(), LegSearchParams()
     )
-    apart, one = (fitters.of(worn)[0].labels.label for worn in (ALL_DIFFER, look))
+    apart, one = (fitters.of(worn)[0].labels.label for worn in (NO_MERGE, look))
     assert set(apart.tolist()) == {int(part) for part in (*Region, *Band)}
     assert (one[apart == Region.FOREARM] == Region.TRUNK).all()
     assert (one[apart == Region.HAND] == Region.HAND).all()
@@ -98,7 +98,7 @@ def test_who_is_bare_armed_and_sleeved_ends_with_one_region_for_all() -> None:
             : np.count_nonzero(drawn == region)
         ]
     appearance.learn(picture, drawn, before_of(drawn))
-    assert look_of([appearance], 0.55)[Region.HAND] == Region.TRUNK
+    assert choose_merge([appearance], 0.55)[Region.HAND] == Region.TRUNK
 
 
 def test_shirt_and_sleeves_end_where_the_colours_change() -> None:
@@ -120,14 +120,14 @@ def test_shirt_and_sleeves_end_where_the_colours_change() -> None:
         picture[6:36, 30 * k + 5 : 30 * k + 25] = colour
     appearance = Appearance(AppearanceParams())
     appearance.learn(picture, drawn, before_of(drawn))
-    look = look_of([appearance], 0.55)
+    look = choose_merge([appearance], 0.55)
     assert [look[band] for band in (Band.LOW_HIPS, Band.HIGH_HIPS)] == [Region.LEG] * 2
     assert [look[band] for band in (Band.WAIST, Band.HIGH_SLEEVE)] == [Region.TRUNK] * 2
     assert look[Band.LOW_SLEEVE] == look[Region.FOREARM]
-    appearance.join(look)
+    appearance.merge_regions(look)
     body = build_model(1.75, full_body())
     worn = (
-        DressedFitters(body, ring(2), [2, 2], FitParams(), LimbSearchParams(), LegSearchParams())
+        RegionSolverCache(body, ring(2), [2, 2], FitParams(), LimbSearchParams(), LegSearchParams())
         .of(look)[0]
         .labels
     )
@@ -201,10 +201,10 @@ def test_the_table_is_the_smoothed_share_of_each_class() -> None:
 
 def test_of_many_who_came_in_other_clothes_few_fitters_are_kept() -> None:
     body = build_model(1.75, full_body())
-    fitters = DressedFitters(
+    fitters = RegionSolverCache(
         body, ring(2), [4, 4], FitParams(), LimbSearchParams(), LegSearchParams()
     )
-    looks = [(*ALL_DIFFER[:-1], worn) for worn in range(6)]
+    looks = [(*NO_MERGE[:-1], worn) for worn in range(6)]
     made = [weakref.ref(fitters.of(look).fitter) for look in looks]
     assert fitters.of(looks[-2]).fitter is made[-2]()
     gc.collect()

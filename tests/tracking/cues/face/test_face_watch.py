@@ -18,7 +18,7 @@ from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.regions import region_labels
-from mocapd.tracking.hypotheses.turned_round import turned_round
+from mocapd.tracking.hypotheses.flipped_poses import flipped_poses
 from mocapd.types import BodyState, Floats, Pose
 from tests.geometry.rigs import ring
 from tests.tracking.profiles import markerless_tracker
@@ -53,7 +53,7 @@ def facing_rad(state: MotionState) -> float:
 
 def test_a_mirrored_body_is_where_the_other_sides_joints_are_seen() -> None:
     state = somebody()
-    mirrored, _ = turned_round(FITTER, state, ALONG)
+    mirrored, _ = flipped_poses(FITTER, state, ALONG)
     across = joints_of(state)
     found = joints_of(mirrored)
     for left, right in (
@@ -70,7 +70,7 @@ def test_a_mirrored_body_is_where_the_other_sides_joints_are_seen() -> None:
 
 def test_a_body_turned_round_keeps_its_limbs_in_place_and_faces_the_other_way() -> None:
     state = somebody()
-    _, turned = turned_round(FITTER, state, ALONG)
+    _, turned = flipped_poses(FITTER, state, ALONG)
     before, after = joints_of(state), joints_of(turned)
     apart = np.linalg.norm(after[INDEX["leftHand"]] - before[INDEX["rightHand"]])
     assert apart < 0.06  # joints lie a little before or behind the trunk's middle
@@ -80,8 +80,8 @@ def test_a_body_turned_round_keeps_its_limbs_in_place_and_faces_the_other_way() 
 def test_turning_twice_brings_everything_back() -> None:
     state = somebody()
     for which in (0, 1):
-        there = turned_round(FITTER, state, ALONG)[which]
-        back = turned_round(FITTER, there, ALONG)[which]
+        there = flipped_poses(FITTER, state, ALONG)[which]
+        back = flipped_poses(FITTER, there, ALONG)[which]
         np.testing.assert_allclose(joints_of(back), joints_of(state), atol=1e-6)
 
 
@@ -129,5 +129,5 @@ def _turned(body: BodyState, fitter: Fitter) -> BodyState:
         body.pose.root_m, local, np.zeros(model.n_pose), np.ones(model.n_shape),
         initial_information(model.space),
     )  # fmt: skip
-    joints, quats = fitter.joints(turned_round(fitter, state, ALONG)[1])
+    joints, quats = fitter.joints(flipped_poses(fitter, state, ALONG)[1])
     return replace(body, pose=Pose(joints[0], quats), joints_m=joints)

@@ -18,8 +18,8 @@ from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.world import World, rig_of
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
-from mocapd.tracking.cues.keypoints.joint_views import JointViews
+from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
+from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
 from tests.sim import small
 
 pytestmark = pytest.mark.kernels
@@ -73,7 +73,7 @@ def test_joints_of_somebody_are_seen_where_they_are() -> None:
 
 
 def _looked(
-    params: JointViewParams, fitter: Fitter, state: MotionState, cameras: CameraViews
+    params: KeypointDetectionParams, fitter: Fitter, state: MotionState, cameras: CameraViews
 ) -> tuple[JointTerm, ...]:
-    joints = JointViews(len(cameras.each), fitter.model.stature_m, params)
-    return joints.term(fitter.model, map(joints.watch(fitter, state, cameras), cameras.present))
+    joints = KeypointDetectors(len(cameras.each), fitter.model.stature_m, params)
+    return joints.term(fitter.model, map(joints.detector(fitter, state, cameras), cameras.present))

@@ -10,7 +10,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.stereo_depth import StereoDepthParams
 from mocapd.fit.view import View
-from mocapd.tracking.cues.stereo.depth_views import with_depths
+from mocapd.tracking.cues.stereo.depth_views import add_stereo_depth
 from mocapd.types import Camera, Frame, FrameSet
 from tests.fit.synthetic import CAMERAS, FACTOR, LABELS, MODEL, standing, textured_greys
 from tests.geometry.rigs import looking_at
@@ -53,7 +53,7 @@ def test_the_body_stays_and_who_is_far_behind_goes() -> None:
     behind = replace(state, root_m=state.root_m + np.array([0.9, 0.0, -1.6]))
     before = views(by, state, behind)
     drawn = [drawing.last((0, 0, 320, 240))[0] > 0 for drawing in by.drawings]
-    seen = with_depths(by, state, before, filmed(BESIDE, state, behind), PARAMS)
+    seen = add_stereo_depth(by, state, before, filmed(BESIDE, state, behind), PARAMS)
     for was, now, mine in zip(before, seen, drawn, strict=True):
         np.testing.assert_array_equal(now.ids[mine], was.ids[mine])
         others = (was.ids > 0) & ~mine
@@ -69,7 +69,7 @@ def test_cameras_that_see_other_sides_and_one_alone_know_no_depths() -> None:
     state = standing()
     crossing = Fitter(MODEL, LABELS, CAMERAS[:2], [FACTOR] * 2, FitParams())
     seen = views(crossing, state)
-    assert with_depths(crossing, state, seen, filmed(CAMERAS[:2], state), PARAMS) == seen
+    assert add_stereo_depth(crossing, state, seen, filmed(CAMERAS[:2], state), PARAMS) == seen
     by = Fitter(MODEL, LABELS, BESIDE, [FACTOR] * 2, FitParams())
     alone = views(by, state)[:1]
-    assert with_depths(by, state, alone, filmed(BESIDE, state), PARAMS) == alone
+    assert add_stereo_depth(by, state, alone, filmed(BESIDE, state), PARAMS) == alone

@@ -8,7 +8,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.fit.view import View
-from mocapd.tracking.cues.stereo.texture_distance import texture_distances
+from mocapd.tracking.cues.stereo.stereo_distances import stereo_distance_terms
 from mocapd.types import Camera, Floats, Frame, FrameSet
 from tests.fit.synthetic import CAMERAS, LABELS, MODEL, apply_step, standing, textured_greys
 from tests.geometry.rigs import looking_at
@@ -54,7 +54,7 @@ def test_a_pair_side_by_side_pulls_the_body_to_where_its_texture_is() -> None:
     truth = standing()
     by = Fitter(MODEL, LABELS, SIDE_BY_SIDE, [2, 2], FitParams())
     nearer = shifted(by, truth, np.array([0.0, 0.0, 0.12]))
-    (term,) = texture_distances(
+    (term,) = stereo_distance_terms(
         by, nearer, drawn(by, nearer), textured(SIDE_BY_SIDE, truth), 0, StereoMatchParams()
     )
     H, b = np.zeros((MODEL.n_pose, MODEL.n_pose)), np.zeros(MODEL.n_pose)
@@ -69,8 +69,8 @@ def test_cameras_that_see_other_sides_and_one_alone_do_not_ask() -> None:
     crossing = Fitter(MODEL, LABELS, CAMERAS[:2], [2, 2], FitParams())
     frames = textured(CAMERAS[:2], truth)
     views = drawn(crossing, truth)
-    assert texture_distances(crossing, truth, views, frames, 0, StereoMatchParams()) == ()
+    assert stereo_distance_terms(crossing, truth, views, frames, 0, StereoMatchParams()) == ()
     alone = Fitter(MODEL, LABELS, SIDE_BY_SIDE, [2, 2], FitParams())
     views = drawn(alone, truth)[:1]
     frames = textured(SIDE_BY_SIDE, truth)
-    assert texture_distances(alone, truth, views, frames, 0, StereoMatchParams()) == ()
+    assert stereo_distance_terms(alone, truth, views, frames, 0, StereoMatchParams()) == ()

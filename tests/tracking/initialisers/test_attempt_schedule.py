@@ -2,17 +2,17 @@
 
 from mocapd.clock import nanoseconds
 from mocapd.tracking.cues.clothes.clothes_params import StartParams
-from mocapd.tracking.initialisers.person_search import LookTimes
+from mocapd.tracking.initialisers.person_search import AttemptSchedule
 
 
 def looks(seconds: float, look_s: float) -> list[bool]:
     """Of the frame sets that come at 25 Hz, those that are looked at; each is a look, which takes so long."""
-    times, t_s, found = LookTimes(StartParams()), 1.0, []
+    times, t_s, found = AttemptSchedule(StartParams()), 1.0, []
     while t_s < seconds:
-        times.came(nanoseconds(t_s))
+        times.on_frame_set(nanoseconds(t_s))
         found.append(times.is_due(nanoseconds(t_s)))
         if found[-1]:
-            times.looked(nanoseconds(t_s), to_the_end=True)
+            times.on_attempt(nanoseconds(t_s), to_the_end=True)
         t_s += max(0.04, look_s) if found[-1] else 0.04
     return found
 
@@ -31,12 +31,12 @@ def test_on_a_slow_machine_others_see_pictures_one_after_the_other_between_two_l
 
 
 def test_a_look_under_way_goes_on_with_every_frame_set() -> None:
-    times = LookTimes(StartParams())
+    times = AttemptSchedule(StartParams())
     for t_s in (1.0, 1.04, 1.08):
-        times.came(nanoseconds(t_s))
+        times.on_frame_set(nanoseconds(t_s))
         assert times.is_due(nanoseconds(t_s))
-        times.looked(nanoseconds(t_s), to_the_end=False)
+        times.on_attempt(nanoseconds(t_s), to_the_end=False)
 
 
 def test_the_first_frame_set_is_looked_at() -> None:
-    assert LookTimes(StartParams()).is_due(5)
+    assert AttemptSchedule(StartParams()).is_due(5)

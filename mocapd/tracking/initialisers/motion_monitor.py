@@ -1,30 +1,30 @@
-"""Whether something as large as a person has moved for seconds while nobody is found."""
+"""Detects that a person-sized region has moved for seconds while no person is found."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
 from mocapd.clock import nanoseconds
-from mocapd.tracking.cues.clothes.clothes_params import MotionWatchParams
+from mocapd.tracking.cues.clothes.clothes_params import MotionMonitorParams
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Bytes
 from mocapd.vision.foreground_kernels import BEFORE
 
 
-class MotionWatch:
-    """Compares the foreground of one look for a person with that of the look before."""
+class MotionMonitor:
+    """Compares the foreground masks of successive searches."""
 
-    def __init__(self, params: MotionWatchParams) -> None:
+    def __init__(self, params: MotionMonitorParams) -> None:
         self._params = params
         self.reset()
 
     def reset(self) -> None:
-        """Somebody is found, or nothing was seen yet."""
+        """A person is found, or no picture has come yet."""
         self._last: Mapping[int, Bytes] = {}
         self._since_ns: int | None = None  # when it began to move
         self._moved_ns = 0  # when it moved last
 
-    def look(self, t_ns: int, foreground: Mapping[int, Bytes]) -> None:
+    def update(self, t_ns: int, foreground: Mapping[int, Bytes]) -> None:
         """The foreground (h,w), labelled as `stands_before` does, of each camera by its index, at a frame set's time."""
         p = self._params
         now = {i: (before == BEFORE) for i, before in foreground.items()}

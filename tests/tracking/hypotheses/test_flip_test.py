@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.fit.fit_result import Fit
-from mocapd.tracking.hypotheses.turn_watch import TurnWatch, TurnWatchParams
+from mocapd.tracking.hypotheses.flip_test import FlipTest, FlipTestParams
 from mocapd.tracking.ticks import Ticks
 from tests.fit.synthetic import standing
 
-PARAMS = TurnWatchParams()
+PARAMS = FlipTestParams()
 
 
 def fit(explained: float, cost: float) -> Fit:
@@ -23,11 +23,11 @@ def fit(explained: float, cost: float) -> Fit:
 
 def looks(long_turns: Collection[int]) -> list[int]:
     """At which turns it looks, of 60."""
-    watch, out = TurnWatch(PARAMS), []
+    flip_test, out = FlipTest(PARAMS), []
     for turn in range(60):
         ticks = Ticks(turn, turn, turn)
-        if watch.is_due(ticks, turn in long_turns):
-            watch.looked(ticks)
+        if flip_test.is_due(ticks, turn in long_turns):
+            flip_test.record_test(ticks)
             out.append(turn)
     return out
 
@@ -44,22 +44,22 @@ def test_a_frame_that_takes_long_anyhow_is_left_alone_for_a_while() -> None:
 
 
 def test_once_is_chance_and_again_and_again_is_not() -> None:
-    watch = TurnWatch(PARAMS)
+    flip_test = FlipTest(PARAMS)
     now, other = fit(0.60, 700.0), fit(0.63, 680.0)
-    assert [watch.is_turned(now, other) for _ in range(3)] == [False, True, True]
-    watch.reset()
-    assert not watch.is_turned(now, other)
+    assert [flip_test.is_better(now, other) for _ in range(3)] == [False, True, True]
+    flip_test.reset()
+    assert not flip_test.is_better(now, other)
 
 
 def test_what_speaks_for_the_present_way_takes_back_what_spoke_against_it() -> None:
-    watch = TurnWatch(PARAMS)
+    flip_test = FlipTest(PARAMS)
     better, worse = fit(0.63, 680.0), fit(0.57, 800.0)
     now = fit(0.60, 700.0)
     for _ in range(20):
-        assert not watch.is_turned(now, better)
-        assert not watch.is_turned(now, worse)
+        assert not flip_test.is_better(now, better)
+        assert not flip_test.is_better(now, worse)
 
 
 def test_no_way_that_explains_far_less_is_taken_for_its_cost() -> None:
-    watch = TurnWatch(replace(PARAMS, explained=10.0))
-    assert not any(watch.is_turned(fit(0.60, 900.0), fit(0.50, 200.0)) for _ in range(5))
+    flip_test = FlipTest(replace(PARAMS, explained=10.0))
+    assert not any(flip_test.is_better(fit(0.60, 900.0), fit(0.50, 200.0)) for _ in range(5))

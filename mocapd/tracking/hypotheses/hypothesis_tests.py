@@ -1,8 +1,8 @@
-"""Poses out of the fit's reach that pictures bear better: hypotheses that are tested one after the other."""
+"""Runs the pose hypotheses that the solver cannot reach, one after another."""
 
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.hypotheses.base import Judged, PoseHypothesis, Situation
+from mocapd.tracking.hypotheses.base import HypothesisContext, PoseHypothesis, ScoredFit
 from mocapd.tracking.hypotheses.foot_heading import FootHeading
 from mocapd.tracking.hypotheses.front_back_flip import FrontBackFlip
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
@@ -12,13 +12,13 @@ from mocapd.tracking.hypotheses.pelvis_heading import PelvisHeading
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 
-class OtherPoses:
-    """All hypotheses, each after those that may make it needless."""
+class HypothesisTests:
+    """All hypotheses, in an order where an earlier one may make a later one needless."""
 
     def __init__(self, params: ClothesParams, stature_m: float, cascade: CascadeArrays) -> None:
         """cascade: of frontal faces."""
         self._always: dict[str, PoseHypothesis] = {
-            "keypoint_poses": KeypointPoses(params.seen_pose),
+            "keypoint_poses": KeypointPoses(params.keypoint_poses),
             "pelvis_heading": PelvisHeading(params.pelvis_heading),
             "foot_heading": FootHeading(params.foot_heading),
         }
@@ -30,17 +30,19 @@ class OtherPoses:
         }
 
     def reset(self) -> None:
-        """Nothing was seen of anybody."""
+        """Resets all hypotheses."""
         for one in (self._always | self._searched).values():
             one.reset()
 
-    def rehearse(self, now: Judged, at: Situation, /) -> None:
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """See PoseHypothesis."""
         for one in (self._always | self._searched).values():
             one.rehearse(now, at)
 
-    def improve(self, now: Judged, at: Situation, searches: bool, probe: Probe) -> Judged:
-        """The fit, or a better one; searches: whether others are tried than where the network saw joints."""
+    def improve(
+        self, now: ScoredFit, at: HypothesisContext, searches: bool, probe: Probe
+    ) -> ScoredFit:
+        """The fit, or a better one. searches: also test the hypotheses that need no detected keypoints."""
         for name, one in (self._always | self._searched if searches else self._always).items():
             now = one.test(now, at)
             probe(name)

@@ -6,7 +6,7 @@ from mocapd.fit.terms.joint_term import JointTermParams
 
 
 @dataclass(frozen=True, slots=True)
-class JointViewParams:
+class KeypointDetectionParams:
     """What the network's maps are worth."""
 
     term: JointTermParams = field(default_factory=JointTermParams)

@@ -1,4 +1,4 @@
-"""The pose that the network's joints say: where a limb, or which way the body faces, is far from it, that is tried."""
+"""Start poses from detected keypoints, for limbs or a facing direction far from them."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ _LEGS = [j for name, one in LIMBS.items() if name.endswith("leg") for j in (one.
 
 
 @dataclass(frozen=True, slots=True)
-class SeenPoseParams:
+class KeypointPoseParams:
     """When a limb, or all of the body, is tried where the network has it."""
 
     limb_cost: float = 25.0  # of its joints, more than there [disagreeing pixels]
@@ -35,17 +35,16 @@ class SeenPoseParams:
     )
 
 
-def starts_as_seen(
+def keypoint_starts(
     fitter: Fitter,
     fit: Fit,
     seen: JointTerm,
     held: Sequence[Term],
-    params: SeenPoseParams,
+    params: KeypointPoseParams,
     legs_alone: bool = False,
 ) -> list[tuple[MotionState, tuple[str, ...]]]:
-    """Where a fit may begin anew, and the parts of the body that change by that: with the limbs that are far from there as
-    they were seen, with all of the body. held: what else holds the pose that the joints say; legs_alone: the rest of the
-    body is known."""
+    """Start poses with the parts that change: with the limbs that are far from their keypoints, and with the whole body.
+    held: further terms of the keypoint fit; legs_alone: the rest of the body is fixed."""
     p, joints_m = params, fitter.joints(fit.state)[0]
     costs = seen.costs(joints_m)
     far = {
@@ -63,7 +62,7 @@ def starts_as_seen(
     lost = [name for name, cost in far.items() if cost > p.limb_cost or whole]
     if not lost:
         return []
-    there = seen_pose(fitter, fit.state, seen, held, p, lost)
+    there = fit_to_keypoints(fitter, fit.state, seen, held, p, lost)
     costs_there = seen.costs(fitter.joints(there)[0])
     limbs = tuple(
         name
@@ -83,23 +82,23 @@ def starts_as_seen(
 
 
 def legs_exchanged(
-    seen: JointTerm, joints_m: Floats, costs: Floats, params: SeenPoseParams
+    seen: JointTerm, joints_m: Floats, costs: Floats, params: KeypointPoseParams
 ) -> bool:
-    """Whether what was seen of the legs is these legs, but each taken for the other, which look alike."""
+    """True if the detected legs match these legs with left and right exchanged."""
     other_m = joints_m.copy()
     other_m[_LEGS] = joints_m[OTHER_SIDE[_LEGS]]
     return bool(costs[_LEGS].sum() - seen.costs(other_m)[_LEGS].sum() > params.limb_cost)
 
 
-def seen_pose(
+def fit_to_keypoints(
     fitter: Fitter,
     state: MotionState,
     seen: JointTerm,
     held: Sequence[Term],
-    params: SeenPoseParams,
+    params: KeypointPoseParams,
     limbs: Collection[str] = (),
 ) -> MotionState:
-    """What the joints alone say, from this state on, but with these limbs bent as they say."""
+    """A pose fitted to the keypoints alone from this state; `limbs` start from two-bone IK."""
     turn_rad = seen.turn_rad(fitter.joints(state)[0])
     if abs(turn_rad) > params.turned_rad:
         local = state.local_xyzw.copy()

@@ -12,10 +12,10 @@ from mocapd.types import Floats
 
 _LEFT_TO_RIGHT = np.diag([-1.0, 1.0, 1.0])
 _ROUND = np.diag([-1.0, 1.0, -1.0])
-MIRRORED, UNDER_LIMBS = 0, 1  # the two of `turned_round`
+MIRRORED, UNDER_LIMBS = 0, 1  # the two of `flipped_poses`
 
 
-def turned_round(
+def flipped_poses(
     fitter: Fitter, state: MotionState, along_m: Floats
 ) -> tuple[MotionState, MotionState]:
     """Two bodies whose outline is about the same along a view (3,), left and right exchanged: mirrored in depth, and turned

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mocapd.tracking.doubt import doubted
+from mocapd.tracking.view_disagreement import lower_confidence
 from mocapd.types import BodyState, Pose, Tracking
 
 
@@ -15,11 +15,11 @@ def body() -> BodyState:
 
 def test_views_that_agree_change_nothing() -> None:
     known = body()
-    assert doubted(known, 0.0) is known
+    assert lower_confidence(known, 0.0) is known
 
 
 def test_confidence_falls_and_uncertainty_holds_the_contradiction() -> None:
-    out = doubted(body(), 0.18)
+    out = lower_confidence(body(), 0.18)
     assert (out.confidence < 0.1).all()
     assert out.uncertainty_m[0] >= 0.18
     assert np.isinf(out.uncertainty_m[1])

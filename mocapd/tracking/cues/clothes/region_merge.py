@@ -16,16 +16,16 @@ from mocapd.fit.limbs.arm_search import ArmSearch
 from mocapd.fit.limbs.leg_search import LegSearch
 from mocapd.fit.solver import Fitter
 from mocapd.tracking.cues.clothes.appearance import Appearance
-from mocapd.tracking.cues.clothes.regions import Band, Region, worn_labels
+from mocapd.tracking.cues.clothes.regions import Band, Region, merged_labels
 from mocapd.types import Camera
 
-Look = tuple[
+RegionMerge = tuple[
     int, ...
 ]  # by region 0..: the region whose colours it shares, itself where it has its own
 
-ALL_DIFFER: Look = (0, *(int(part) for part in (*Region, *Band)))
+NO_MERGE: RegionMerge = (0, *(int(part) for part in (*Region, *Band)))
 # the look that somebody is found with, and of those who come in turn; each has some 5 MB of buffers
-_KEPT = 4
+_CACHE_SIZE = 4
 _MAY_BE_ONE = (
     (Region.HAND, Region.FOREARM),
     (Region.FOREARM, Region.TRUNK),
@@ -39,44 +39,44 @@ _CHAINS = (
 )
 
 
-def look_of(seen: Sequence[Appearance], alike: float) -> Look:
-    """What the cameras learned: where shirt and sleeves end, and that regions whose colours overlap by more than `alike`,
-    0..1, are one."""
-    look = list(ALL_DIFFER)
+def choose_merge(cameras: Sequence[Appearance], alike: float) -> RegionMerge:
+    """Where the cameras' histograms put the ends of shirt and sleeves; regions whose colours overlap by more than
+    `alike`, 0..1, are merged."""
+    merge = list(NO_MERGE)
     for limb, bands, trunk in _CHAINS:
-        limbs = _bands_of_limb(seen, limb, bands, trunk)
+        limbs = _bands_of_limb(cameras, limb, bands, trunk)
         for k, band in enumerate(bands):
-            look[band] = limb if k < limbs else trunk
+            merge[band] = limb if k < limbs else trunk
     for one, other in _MAY_BE_ONE:
-        if np.mean([appearance.overlap(one, other) for appearance in seen]) > alike:
-            look[one] = other
-    for k in range(len(look)):
-        while look[look[k]] != look[k]:
-            look[k] = look[look[k]]
-    return tuple(look)
+        if np.mean([appearance.overlap(one, other) for appearance in cameras]) > alike:
+            merge[one] = other
+    for k in range(len(merge)):
+        while merge[merge[k]] != merge[k]:
+            merge[k] = merge[merge[k]]
+    return tuple(merge)
 
 
 def _bands_of_limb(
-    seen: Sequence[Appearance], limb: Region, bands: Sequence[Band], trunk: Region
+    cameras: Sequence[Appearance], limb: Region, bands: Sequence[Band], trunk: Region
 ) -> int:
     """How many of the bands look like the limb that they begin at, rather than like the trunk."""
     likelier = [
-        float(np.mean([one.overlap(band, limb) - one.overlap(band, trunk) for one in seen]))
+        float(np.mean([one.overlap(band, limb) - one.overlap(band, trunk) for one in cameras]))
         for band in bands
     ]
     return int(np.argmax([sum(likelier[:n]) - sum(likelier[n:]) for n in range(len(bands) + 1)]))
 
 
-class Dressed(NamedTuple):
-    """What works with one look."""
+class RegionSolvers(NamedTuple):
+    """The fitter and limb searches of one region merge."""
 
     fitter: Fitter
     arms: ArmSearch
     legs: LegSearch
 
 
-class DressedFitters:
-    """Fitter and searches for arms and legs of each look, made when it is asked for; the newest are kept."""
+class RegionSolverCache:
+    """A cache of the solvers of recent region merges."""
 
     def __init__(
         self,
@@ -91,16 +91,18 @@ class DressedFitters:
         """body: a whole one; image_scales, each: as `Fitter`."""
         self._body, self._cameras, self._scales = body, cameras, image_scales
         self._fit, self._limbs, self._legs, self._each = fit, limbs, legs, each
-        self._made: dict[Look, Dressed] = {}
+        self._cache: dict[RegionMerge, RegionSolvers] = {}
 
-    def of(self, look: Look) -> Dressed:
-        """The same ones to whoever asks for the same look, unless _KEPT others were asked for since."""
-        dressed = self._made.pop(look, None)
-        if dressed is None:
-            labels = worn_labels(self._body, look)
+    def of(self, merge: RegionMerge) -> RegionSolvers:
+        """The solvers of this merge, from the cache if present."""
+        solvers = self._cache.pop(merge, None)
+        if solvers is None:
+            labels = merged_labels(self._body, merge)
             fitter = Fitter(self._body, labels, self._cameras, self._scales, self._fit, self._each)
-            dressed = Dressed(fitter, ArmSearch(fitter, self._limbs), LegSearch(fitter, self._legs))
-        self._made[look] = dressed
-        if len(self._made) > _KEPT:
-            del self._made[next(iter(self._made))]
-        return dressed
+            solvers = RegionSolvers(
+                fitter, ArmSearch(fitter, self._limbs), LegSearch(fitter, self._legs)
+            )
+        self._cache[merge] = solvers
+        if len(self._cache) > _CACHE_SIZE:
+            del self._cache[next(iter(self._cache))]
+        return solvers

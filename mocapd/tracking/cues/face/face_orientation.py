@@ -1,7 +1,7 @@
-"""Which way somebody faces, told by the face: from the front and from behind two cameras side by side see the same outline.
+"""Front-back test by face detection: from front and back two cameras side by side see the same outline.
 
-A frontal face that shows where the tracked head is thought to face away speaks for a body that is turned round. One that does
-not show tells little: it looks down, a hand is before it, or it is one that the cascade does not know.
+A frontal face where the tracked head should face away is evidence for a flipped body. A missing face is weak evidence:
+the head may look down, be covered, or defeat the cascade.
 """
 
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ _FORWARD = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
-class FaceWatchParams:
+class FaceOrientationParams:
     """When a face is looked for, and what it tells."""
 
     every_s: float = 2 / 30  # from one look to the next; each at another camera
@@ -41,21 +41,23 @@ class FaceWatchParams:
     )
 
 
-class FaceWatch:
-    """The odds that the tracked body is turned round, which are all of its state."""
+class FaceOrientation:
+    """Log-odds that the tracked body is flipped; no other state."""
 
-    def __init__(self, cascade: CascadeArrays, stature_m: float, params: FaceWatchParams) -> None:
+    def __init__(
+        self, cascade: CascadeArrays, stature_m: float, params: FaceOrientationParams
+    ) -> None:
         """cascade: of frontal faces, see `vision.face.lbp_cascade`."""
         self._cascade, self._stature_m, self._params = cascade, stature_m, params
         self.reset()
 
     def reset(self) -> None:
-        """The body faces where it is thought to."""
+        """Clears the evidence."""
         self._odds = 0.0
 
     @property
-    def is_turned(self) -> bool:
-        """Whether the body very likely faces the other way."""
+    def is_reversed(self) -> bool:
+        """True if the body very likely faces the other way."""
         return self._odds > self._params.sure
 
     def rehearse(self) -> None:
@@ -63,7 +65,7 @@ class FaceWatch:
         blank = np.zeros((64, 64), np.uint8)
         faces_near(self._cascade, blank, 32.0, 32.0, 28.0, 8.0, self._params.windows)
 
-    def look(
+    def update(
         self,
         fitter: Fitter,
         state: MotionState,
@@ -84,12 +86,12 @@ class FaceWatch:
             return
         share = (
             (p.rate, p.false_rate)
-            if self._found(camera, middle, frames)
+            if self._shows_face(camera, middle, frames)
             else (1.0 - p.rate, 1.0 - p.false_rate)
         )
         self._odds = max(self._odds + float(np.log(share[0] / share[1])), 0.0)
 
-    def _found(self, camera: Camera, middle_m: Floats, frames: FrameSet) -> bool:
+    def _shows_face(self, camera: Camera, middle_m: Floats, frames: FrameSet) -> bool:
         depth_m = float(to_camera(camera, middle_m)[2])
         if depth_m <= 0.1:
             return False

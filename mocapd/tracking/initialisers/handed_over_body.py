@@ -1,16 +1,16 @@
-"""A body that was known a moment ago, to this tracker's predecessor: looked for where it was."""
+"""Starts from a recent body of another tracker, at its place."""
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import local_from_global
 from mocapd.clock import nanoseconds
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue
-from mocapd.tracking.initialisers.base import Begun
-from mocapd.tracking.track_state import Proportions, at_rest
+from mocapd.tracking.initialisers.base import InitialPose
+from mocapd.tracking.track_state import BodyShapeEstimate, resting_state
 from mocapd.types import BodyState, FrameSet, Skeleton
 
 
-class GivenBody:
+class HandedOverBody:
     """See Initialiser. Keeps the body until the next frame set."""
 
     name = "given_body"
@@ -21,35 +21,40 @@ class GivenBody:
         skeleton: Skeleton,
         shirt: ShirtCue | None,
         clothes: ClothesCue | None,
-        oldest_s: float,
+        max_age_s: float,
     ) -> None:
-        """model: of a whole body; oldest_s: a body that is older is not looked for."""
+        """model: of a whole body; max_age_s: a body that is older is not looked for."""
         self._model, self._skeleton = model, skeleton
         self._shirt, self._clothes = shirt, clothes
-        self._oldest_ns = nanoseconds(oldest_s)
+        self._max_age_ns = nanoseconds(max_age_s)
         self._body: BodyState | None = None
 
-    def give(self, body: BodyState | None) -> None:
-        """Look for this body in the next frame set; None: for nobody."""
+    def set_body(self, body: BodyState | None) -> None:
+        """Sets the body for the next frame set; None: none."""
         self._body = body if body is not None and body.pose is not None else None
 
     @property
     def body(self) -> BodyState | None:
-        """Who is looked for."""
+        """The body to start from."""
         return self._body
 
     def find(
-        self, wearer: Proportions, present: dict[int, float], frames: FrameSet, turn: int, /
-    ) -> Begun | None:
+        self,
+        wearer: BodyShapeEstimate,
+        present: dict[int, float],
+        frames: FrameSet,
+        frame_index: int,
+        /,
+    ) -> InitialPose | None:
         """See Initialiser."""
         body, self._body = self._body, None
-        if body is None or body.pose is None or abs(frames.t_ns - body.t_ns) > self._oldest_ns:
+        if body is None or body.pose is None or abs(frames.t_ns - body.t_ns) > self._max_age_ns:
             return None
         local = local_from_global(self._skeleton, body.pose.quats_xyzw)
-        there = at_rest(self._model, body.pose.root_m.copy(), local, wearer)
+        start = resting_state(self._model, body.pose.root_m.copy(), local, wearer)
         trunk = whole = None
         if self._shirt is not None:
-            trunk = self._shirt.begin(there, wearer.taught_s, present, turn)
+            trunk = self._shirt.start_from(start, wearer.taught_s, present, frame_index)
         if self._clothes is not None:
-            whole = self._clothes.begin(there, frames)
-        return None if trunk is None and whole is None else Begun(there, trunk, whole)
+            whole = self._clothes.start_from(start, frames)
+        return None if trunk is None and whole is None else InitialPose(start, trunk, whole)

@@ -14,7 +14,7 @@ from mocapd.fit.view import View
 from mocapd.types import Bytes, FrameSet
 
 
-def greys_of(fitter: Fitter, views: Sequence[View], frames: FrameSet) -> list[Bytes]:
+def grey_pictures(fitter: Fitter, views: Sequence[View], frames: FrameSet) -> list[Bytes]:
     """The pictures of these views in grey, as delivered."""
 
     def grey(view: View) -> Bytes:
@@ -24,12 +24,12 @@ def greys_of(fitter: Fitter, views: Sequence[View], frames: FrameSet) -> list[By
     return list(fitter.each(grey, views))
 
 
-def texture_distances(
+def stereo_distance_terms(
     fitter: Fitter,
     predicted: MotionState,
     views: Sequence[View],
     frames: FrameSet,
-    turn: int,
+    frame_index: int,
     params: StereoMatchParams,
     only: Collection[int] = (),
 ) -> tuple[Term, ...]:
@@ -40,7 +40,7 @@ def texture_distances(
     if len(views) != 2 or not fitter.has_small_baseline(predicted, views):
         return ()
     drawing, other = (fitter.drawings[view.index] for view in views)
-    first, second = greys_of(fitter, views, frames)
+    first, second = grey_pictures(fitter, views, frames)
     body, roi = fitter.shaper(predicted.factors), views[0].roi
     ids, triangles = drawing.last(roi)
     if only:
@@ -51,7 +51,7 @@ def texture_distances(
         body,
         other.camera,
         (first, second),
-        turn,
+        frame_index,
         roi[:2],
         params,
         fitter.each,

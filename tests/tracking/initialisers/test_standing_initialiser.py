@@ -14,7 +14,12 @@ from mocapd.fit.terms.floor_term import FloorParams, FloorTerm
 from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.clothes_params import StartParams
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
-from mocapd.tracking.initialisers.stance import blobs_of, first_fit, standing, views_of
+from mocapd.tracking.initialisers.standing_initialiser import (
+    blobs_of,
+    fit_first_pose,
+    person_candidates,
+    views_of,
+)
 from mocapd.vision.foreground_kernels import BEFORE
 from tests.geometry.rigs import looking_at
 
@@ -54,8 +59,8 @@ def found(state: MotionState) -> Fit:
         x0, y0, x1, y1 = roi
         before[y0:y1, x0:x1] = np.where(drawing.render(state, 0.0, roi) > 0, BEFORE, 0)
         blobs[i] = blobs_of(before, False, PARAMS)
-    who = standing(blobs, CAMERAS, [FACTOR] * 2, STATURE_M, PARAMS)[0]
-    fits = first_fit(
+    who = person_candidates(blobs, CAMERAS, [FACTOR] * 2, STATURE_M, PARAMS)[0]
+    fits = fit_first_pose(
         by, who, views_of(who, {0: 0.0, 1: 0.0}), state.factors, state.information,
         (FloorTerm(by.model, FloorParams()),), PARAMS,
     )  # fmt: skip

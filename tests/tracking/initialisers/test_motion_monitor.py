@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mocapd.clock import nanoseconds
-from mocapd.tracking.cues.clothes.clothes_params import MotionWatchParams
-from mocapd.tracking.initialisers.motion_watch import MotionWatch
+from mocapd.tracking.cues.clothes.clothes_params import MotionMonitorParams
+from mocapd.tracking.initialisers.motion_monitor import MotionMonitor
 from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Bytes
 from mocapd.vision.foreground_kernels import BEFORE, SHADOW
@@ -23,10 +23,10 @@ def room(x: int | None, label: int = BEFORE, width: int = 30) -> Bytes:
 
 def reason_after(shown: list[list[Bytes]]) -> LostReason | None:
     """After these looks, each at what every camera shows."""
-    watch = MotionWatch(MotionWatchParams())
+    monitor = MotionMonitor(MotionMonitorParams())
     for k, pictures in enumerate(shown):
-        watch.look(nanoseconds(LOOKS_S * k), dict(enumerate(pictures)))
-    return watch.reason(nanoseconds(LOOKS_S * len(shown)))
+        monitor.update(nanoseconds(LOOKS_S * k), dict(enumerate(pictures)))
+    return monitor.reason(nanoseconds(LOOKS_S * len(shown)))
 
 
 def sways(k: int) -> int:
@@ -55,8 +55,8 @@ def test_else_nothing_is(shown: list[list[Bytes]]) -> None:
 
 
 def test_who_is_found_leaves_no_reason_behind() -> None:
-    watch = MotionWatch(MotionWatchParams())
+    monitor = MotionMonitor(MotionMonitorParams())
     for k in range(16):
-        watch.look(nanoseconds(LOOKS_S * k), {0: room(sways(k)), 1: room(sways(k))})
-    watch.reset()
-    assert watch.reason(nanoseconds(3.2)) is None
+        monitor.update(nanoseconds(LOOKS_S * k), {0: room(sways(k)), 1: room(sways(k))})
+    monitor.reset()
+    assert monitor.reason(nanoseconds(3.2)) is None

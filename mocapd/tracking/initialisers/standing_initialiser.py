@@ -1,4 +1,4 @@
-"""The first pose: a silhouette before the known background, as somebody who stands on the floor, whichever way."""
+"""The first pose of a standing person, from silhouettes in the foreground."""
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
@@ -45,8 +45,8 @@ class Blob:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Standing:
-    """Somebody of the known height at a place (3,) on the floor, as blobs of cameras, by index, show; error [work px^2]."""
+class PersonCandidate:
+    """A person of the given stature at place_m (3,) on the floor, with a blob for each camera index; error [work px^2]."""
 
     place_m: Floats
     blobs: Mapping[int, Blob]
@@ -76,15 +76,15 @@ def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
     return out
 
 
-def standing(
+def person_candidates(
     blobs: Mapping[int, Sequence[Blob]],
     cameras: Sequence[Camera],
     image_scales: Sequence[int],
     stature_m: float,
     params: StartParams,
-) -> list[Standing]:
-    """Where people of this height may stand, best first: for each blob of the first camera one, joined with the blobs of the
-    others that agree most."""
+) -> list[PersonCandidate]:
+    """Places where people of this stature may stand, best first: one for each blob of the first camera, matched with the
+    best blobs of the others."""
     if not blobs or any(not one for one in blobs.values()):
         return []
     first = next(iter(blobs))
@@ -105,14 +105,14 @@ def _best_place(
     image_scales: Sequence[int],
     stature_m: float,
     params: StartParams,
-) -> Standing | None:
+) -> PersonCandidate | None:
     camera, scale = cameras[first], image_scales[first]
     pixel = np.array([(blob.middle_x + 0.5) * scale - 0.5, camera.size_px[1] / 2.0])
     ray = rays(camera, pixel)[1].reshape(3)
     ahead = np.array([ray[0], 0.0, ray[2]])
     ahead /= np.linalg.norm(ahead)
     eye = centre(camera) * np.array([1.0, 0.0, 1.0])
-    best: Standing | None = None
+    best: PersonCandidate | None = None
     for away_m in np.arange(params.nearest_m, params.farthest_m, params.step_m):
         place = eye + away_m * ahead
         error, mine = 0.0, {}
@@ -124,7 +124,7 @@ def _best_place(
             mine[i] = one
             error += _misfit(one, top, foot, height_px)
         if best is None or error < best.error:
-            best = Standing(place, mine, error)
+            best = PersonCandidate(place, mine, error)
     return best
 
 
@@ -137,8 +137,7 @@ def _misfit(blob: Blob, top: Floats, foot: Floats, height_px: float) -> float:
 
 
 def is_standing(fitter: Fitter, fit: Fit) -> bool:
-    """Whether a first pose has its hips about as high as somebody who stands, and its feet on the floor: a smaller person on
-    a television has not."""
+    """True if the hips are about as high as in the T-pose and the feet on the floor; excludes people on a television."""
     joints_m = fitter.joints(fit.state)[0]
     return bool(
         joints_m[0, 1] > _UPRIGHT * fitter.model.rest_m[0, 1]
@@ -146,7 +145,7 @@ def is_standing(fitter: Fitter, fit: Fit) -> bool:
     )
 
 
-def views_of(who: Standing, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
+def views_of(who: PersonCandidate, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
     """Somebody's blobs as what a fit of silhouettes looks at; offsets_s: each camera's own time after the frame set's, by
     index."""
     return tuple(
@@ -155,16 +154,16 @@ def views_of(who: Standing, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
     )
 
 
-def first_fit(
+def fit_first_pose(
     fitter: Fitter,
-    who: Standing,
+    who: PersonCandidate,
     views: Sequence[View],
     factors: Floats,
     information: Floats,
     terms: Sequence[Term],
     params: StartParams,
 ) -> Generator[None, None, Fit]:
-    """The best of some stances fitted to the blobs, by a fitter whose body is a silhouette; waits after each fit."""
+    """The best of several start poses, fitted to the blobs by a silhouette fitter; yields after each fit."""
     rest = fitter.shaper(factors).rest
 
     def fitted(yaw: float, arm: float) -> Fit:
@@ -198,13 +197,13 @@ def fit_to_blobs(
     terms: Sequence[Term],
     params: StartParams,
 ) -> Fit:
-    """A body fitted to somebody's blobs from this state on, by a fitter whose body is a silhouette."""
+    """A body fitted to the blobs from this state on, by a silhouette fitter."""
     return fitter.fit(state, views, params.loose_s, iterations, terms=terms)
 
 
-def _ways(who: Standing, eyes_m: Sequence[Floats]) -> tuple[list[float], list[float]]:
-    """Which way somebody may face [rad], 0 along +Z: the cameras, and past them on either side where these stand beside each
-    other, as they see one side alone; or any way where these stand all around."""
+def _ways(who: PersonCandidate, eyes_m: Sequence[Floats]) -> tuple[list[float], list[float]]:
+    """Facing directions to try [rad], 0 along +Z: towards the cameras, and turned to either side for cameras with nearly
+    the same direction; four quarters if cameras stand all around."""
     away = np.array([eye - who.place_m for eye in eyes_m])[:, [0, 2]]
     away /= np.linalg.norm(away, axis=1, keepdims=True)
     middle = away.mean(axis=0)

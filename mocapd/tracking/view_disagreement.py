@@ -1,4 +1,4 @@
-"""What is left of a body's confidence while the cameras' views contradict each other for good."""
+"""Lowers a body's confidence while the cameras' views contradict each other persistently."""
 
 from dataclasses import replace
 
@@ -9,9 +9,11 @@ from mocapd.types import BodyState
 _HALF_M = 0.05  # a contradiction that halves confidence
 
 
-def doubted(body: BodyState, off_m: float) -> BodyState:
-    """A body whose joints may be off by `off_m` [m] more than its tracker knows: views that contradict each other find a pose
-    between them, in which each joint is well confirmed."""
+def lower_confidence(body: BodyState, off_m: float) -> BodyState:
+    """The body with joints that may be off by `off_m` [m] more than its tracker estimates.
+
+    A fit to contradicting views lies between them, and each view seems to confirm its joints.
+    """
     if off_m <= 0.0 or body.pose is None:
         return body
     confidence = body.confidence / (1.0 + (off_m / _HALF_M) ** 2)

@@ -1,4 +1,4 @@
-"""What each camera sees of the predicted body's joints: a small picture about it, looked at by the network of heatmaps."""
+"""Keypoint detection: runs the heatmap network of each camera on a crop about the predicted body."""
 
 from collections.abc import Callable, Iterable
 
@@ -12,7 +12,7 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays, JointTerm
 from mocapd.geometry.camera_model import to_camera, undistort
 from mocapd.tracking.cues.clothes.camera_views import CameraView, CameraViews
-from mocapd.tracking.cues.keypoints.joint_view_params import JointViewParams
+from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
 from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.heatmaps.joint_network import (
     CELLS,
@@ -32,55 +32,55 @@ _CELL_PX = INPUT_PX / CELLS
 _GREY = (127.5, 127.5, 127.5)
 
 
-def unwatched(_camera: int) -> JointRays | None:
-    """No camera is looked at."""
+def no_detection(_camera: int) -> JointRays | None:
+    """Detects nothing, for frame sets without keypoint detection."""
     return None
 
 
-class JointViews:
-    """One network for each camera."""
+class KeypointDetectors:
+    """A network for each camera."""
 
-    def __init__(self, count: int, stature_m: float, params: JointViewParams) -> None:
+    def __init__(self, count: int, stature_m: float, params: KeypointDetectionParams) -> None:
         """count: of cameras."""
-        looked_at = count if params.term.weight > 0.0 else 0
-        self._networks = [JointNetwork() for _ in range(looked_at)]
-        self._size, self._params = stature_m / STATURE_M, params
+        n_networks = count if params.term.weight > 0.0 else 0
+        self._networks = [JointNetwork() for _ in range(n_networks)]
+        self._relative_size, self._params = stature_m / STATURE_M, params
 
-    def watch(
+    def detector(
         self, fitter: Fitter, predicted: MotionState, cameras: CameraViews
     ) -> Callable[[int], JointRays | None]:
-        """What looks at a camera by its index for the joints of a body that is expected here."""
+        """Returns a function that detects the keypoints of the predicted body in the camera of an index."""
         if not self._networks:
-            return unwatched
+            return no_detection
         here_m, _ = fitter.joints(predicted)
 
-        def see(i: int) -> JointRays | None:
+        def detect(i: int) -> JointRays | None:
             late_s, there_m = cameras.present[i], here_m
             if late_s:
                 there_m, _ = fitter.joints(predict_state(fitter.model, predicted, late_s))
             return self._rays(fitter, i, cameras.each[i], here_m, there_m)
 
-        return see
+        return detect
 
-    def term(self, model: BodyModel, seen: Iterable[JointRays | None]) -> tuple[JointTerm, ...]:
-        """What the cameras saw as a term of the fit; none where they do not count or nothing was looked at."""
-        there = [one for one in seen if one is not None]
-        return (JointTerm(model, there, self._params.term),) if there else ()
+    def term(self, model: BodyModel, rays: Iterable[JointRays | None]) -> tuple[JointTerm, ...]:
+        """The detections as a term of the fit; empty without detections."""
+        found = [camera_rays for camera_rays in rays if camera_rays is not None]
+        return (JointTerm(model, found, self._params.term),) if found else ()
 
     def _rays(
         self, fitter: Fitter, index: int, view: CameraView, here_m: Floats, there_m: Floats
     ) -> JointRays | None:
         """here_m (J,3): the joints at the frame set's instant, there_m (J,3) at the camera's own."""
-        p, size, drawing = self._params, self._size, fitter.drawings[index]
+        p, size, drawing = self._params, self._relative_size, fitter.drawings[index]
         camera, k = drawing.camera, drawing.image_scale
         in_camera = to_camera(camera, there_m)
         middle = middle_of(in_camera[_HIPS], in_camera[_NECK])
         if middle[2] < _NEAREST_M:
             return None
         crop = crop_about(camera, middle, SIDE_M * size, INPUT_PX, k)
-        seen = self._networks[index].detect(*_cut_out(view, crop))
-        view.mark_person(seen.mask_odds, crop)
-        crop_px = seen.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
+        heatmaps = self._networks[index].detect(*_cut_out(view, crop))
+        view.mark_person(heatmaps.mask_odds, crop)
+        crop_px = heatmaps.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
         frame_px = ((crop_px - crop.corner_px) / crop.scale + 0.5) * k - 0.5
         distorted = (frame_px - camera.K[:2, 2]) / camera.K[[0, 1], [0, 1]]
         xy = undistort(camera.dist, distorted, _ITERATIONS)
@@ -88,33 +88,33 @@ class JointViews:
         moved_m = in_camera - to_camera(camera, here_m)
         xy = xy - moved_m[_JOINTS, :2] / middle[2]
         inside = (
-            (seen.at_cells > p.inside_cells) & (seen.at_cells < CELLS - 1 - p.inside_cells)
+            (heatmaps.at_cells > p.inside_cells) & (heatmaps.at_cells < CELLS - 1 - p.inside_cells)
         ).all(axis=1)
         inside &= ((frame_px >= 0) & (frame_px < camera.size_px)).all(axis=1)
         cell_m = SIDE_M * size / CELLS
-        information = _inverse(seen.spread_cells2, p) / cell_m**2
-        sd_m = np.maximum(p.laplace * seen.scale_m * size, p.least_depth_m)
+        information = _inverse(heatmaps.spread_cells2, p) / cell_m**2
+        sd_m = np.maximum(p.laplace * heatmaps.scale_m * size, p.least_depth_m)
         return JointRays(
             camera, _JOINTS[inside], xy[inside], information[inside],
-            size * seen.farther_m[inside], (1.0 / sd_m**2)[inside],
+            size * heatmaps.farther_m[inside], (1.0 / sd_m**2)[inside],
         )  # fmt: skip
 
 
 def _cut_out(view: CameraView, crop: PersonCrop) -> tuple[Bytes, Singles, Bytes]:
     """The picture, the background, and where that is known."""
     M, size = crop.affine, (INPUT_PX, INPUT_PX)
-    room, known = view.background.empty_room()
+    room, known_mask = view.background.empty_room()
     picture = cv2.warpAffine(view.picture, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
     background = cv2.warpAffine(room, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
-    there = cv2.warpAffine(known, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))
+    is_known = cv2.warpAffine(known_mask, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))
     return (
         np.asarray(picture, np.uint8),
         np.asarray(background, np.float32),
-        np.asarray(there, np.uint8),
+        np.asarray(is_known, np.uint8),
     )
 
 
-def _inverse(spread_cells2: Floats, p: JointViewParams) -> Floats:
+def _inverse(spread_cells2: Floats, p: KeypointDetectionParams) -> Floats:
     """Information (J,3) of spreads (J,3), both xx, xy, yy."""
     xx = np.maximum(spread_cells2[:, 0] - p.blur_cells2, 0.0) + p.least_cells2
     yy = np.maximum(spread_cells2[:, 2] - p.blur_cells2, 0.0) + p.least_cells2

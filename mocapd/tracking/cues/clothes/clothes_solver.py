@@ -1,0 +1,350 @@
+"""Fits the body to the regions of its clothes: the whole body, or legs and head below a trunk from the shirt."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.model import BodyModel, build_model
+from mocapd.body.pose_space import full_body, upper_body
+from mocapd.each import Each, in_turn
+from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.fit_result import Fit
+from mocapd.fit.idmap_renderer import image_scales
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.priors.motion_prior import predicted_information
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.fit.terms.planted_term import PlantedTerm
+from mocapd.fit.terms.term import Term
+from mocapd.fit.view import View
+from mocapd.tracking.base import Probe
+from mocapd.tracking.cues.clothes.camera_views import CameraViews
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
+from mocapd.tracking.cues.clothes.region_merge import RegionSolverCache
+from mocapd.tracking.cues.clothes.regions import Region, silhouette_labels
+from mocapd.tracking.cues.clothes.wearer_appearance import WearerAppearance
+from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
+from mocapd.tracking.cues.stereo.depth_views import add_stereo_depth
+from mocapd.tracking.effort import OptionalWork
+from mocapd.tracking.hypotheses.base import WHOLE, HypothesisContext, PoseEvidence, ScoredFit
+from mocapd.tracking.hypotheses.hypothesis_tests import HypothesisTests
+from mocapd.tracking.planted_feet import PlantedFeet
+from mocapd.tracking.prediction_prior import prediction_prior
+from mocapd.tracking.ticks import Ticks
+from mocapd.tracking.track_state import (
+    NEW_BODY_PRIOR_S,
+    BodyShapeEstimate,
+    TrackState,
+    t_pose_state,
+)
+from mocapd.tracking.velocity import velocity_between
+from mocapd.types import Floats, Frame, FrameSet, Rig
+from mocapd.vision.face.lbp_cascade import blind_cascade
+from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
+
+# their stereo distances are measured below a trunk that the shirt places
+_LOWER_REGIONS = (Region.LEG, Region.FOOT)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClothesObservation:
+    """A frame set classified about the predicted body, which is rendered into every view; joints: detected keypoints."""
+
+    drawn: MotionState
+    views: list[View]
+    joints: tuple[JointTerm, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClothesEstimate:
+    """A whole body fitted to the clothes; cameras: those that show it; changed: parts found away from their prediction."""
+
+    fit: Fit
+    motion: MotionState
+    views: tuple[View, ...]
+    cameras: tuple[str, ...]
+    changed: tuple[str, ...] = ()
+
+
+class ClothesSolver:
+    """Fits a body to the regions of its clothes. Keeps the appearance model, planted feet and hypothesis state."""
+
+    def __init__(
+        self,
+        rig: Rig,
+        stature_m: float,
+        params: ClothesParams,
+        cascade: CascadeArrays | None = None,
+        each: Each = in_turn,
+    ) -> None:
+        """cascade: of frontal faces, see `vision.face.lbp_cascade`; None: faces tell nothing."""
+        self.params = p = params
+        self._rig = rig
+        self.model = model = build_model(stature_m, full_body())
+        scales = image_scales(rig.cameras, p.fit.work_width_px)
+        solvers = RegionSolverCache(model, rig.cameras, scales, p.fit, p.limbs, p.legs, each)
+        self.appearance = WearerAppearance(solvers, p)
+        self.silhouettes = Fitter(model, silhouette_labels(model), rig.cameras, scales, p.fit, each)
+        self.terms = PoseTerms(self.model, len(rig.cameras), p)
+        self.cameras = CameraViews(self.fitter, p)
+        self._hypotheses = HypothesisTests(p, stature_m, cascade or blind_cascade())
+        self._feet = PlantedFeet(self.model.rest_m, p.feet)
+        self.work = OptionalWork()
+
+    def searches_everywhere(self, ticks: Ticks) -> bool:
+        """True if this frame set updates the foreground of whole pictures, not only about the body."""
+        return ticks.due(self.params.uncovered_s * self.work.ghosts)
+
+    def _tests_hypotheses(self, ticks: Ticks) -> bool:
+        """Whether other poses are tried in this frame."""
+        return ticks.due(self.work.hypotheses * TICK_S)
+
+    @property
+    def fitter(self) -> Fitter:
+        """Of the wearer's present look."""
+        return self.appearance.fitter
+
+    def reset(self) -> None:
+        """Forget background and look."""
+        self.cameras.reset()
+        self.appearance.forget(self.cameras)
+        self._hypotheses.reset()
+        self._feet.reset()
+
+    def rehearse(self) -> None:
+        """Compiles or loads the kernels that an empty room does not reach. Callers reset what it learns by that."""
+        model, cameras = self.model, self.cameras
+        wearer = BodyShapeEstimate(np.ones(model.n_shape), initial_information(model.space), 0.0)
+        body = t_pose_state(model, model.rest_m[0].copy(), wearer)
+        black = {
+            one.name: Frame(one.name, 0, 0, np.zeros((*one.size_px[::-1], 3), np.uint8))
+            for one in self._rig.cameras
+        }
+        frames = FrameSet(0, black, 0)
+        cameras.take({}, dict.fromkeys(range(len(cameras.each)), 0.0))
+        cameras.mark_body(body)
+        cameras.seed_background()
+        cameras.update_foreground()
+        self.appearance.learn_first(body, cameras)
+        views = cameras.classify(body)
+        if not views:
+            return  # nobody at the origin is in any picture
+        fitter = self.fitter
+        views = add_stereo_depth(fitter, body, views, frames, self.params.depths)
+        if fitter.has_small_baseline(body, views):  # black pictures have no depths
+            unseen = np.full(views[0].ids.shape, np.nan, np.float32)
+            views[0] = replace(views[0], depth_m=unseen)
+        joints = self.terms.joints
+        observed = joints.term(model, map(joints.detector(fitter, body, cameras), cameras.present))
+        terms = (*self.terms.measure(fitter, body, views, frames, 0), *observed)
+        fit = fitter.fit(body, views, TICK_S, 2, terms=terms)
+        predicted_information(
+            fit.covariance, body.velocity, 1.0, fitter.prediction_sd, [], self.params.motion
+        )
+        cameras.learn(body, views)
+        _velocity_of(model, self.params, fit, body, TICK_S, ())
+        evidence = PoseEvidence(cameras.classify, lambda _, __: terms)
+        at = HypothesisContext(
+            self.appearance.solvers, TICK_S, frames, Ticks(1, 1, 1), observed, evidence
+        )
+        self._hypotheses.rehearse(ScoredFit(fit, views, terms), at)
+
+    def fit_whole_body(
+        self,
+        state: TrackState,
+        observed: ClothesObservation,
+        dt_s: float,
+        frames: FrameSet,
+        ticks: Ticks,
+        with_depth: bool,
+        probe: Probe,
+    ) -> ClothesEstimate | None:
+        """Fits the whole body, dt_s after `state`; None if too little of it is visible."""
+        p, fitter, last = self.params, self.fitter, state.whole
+        views, predicted = observed.views, observed.drawn
+        if not views:
+            return None
+        if with_depth:
+            views = add_stereo_depth(fitter, predicted, views, frames, p.depths)
+            probe("clothes.depths")
+        motion = None
+        if last is not None:
+            motion = prediction_prior(
+                fitter, last, state.motion.velocity, dt_s, p.limbs.uncertain_arm, p.motion
+            )
+        planted = self._planted()
+
+        def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
+            measured = self.terms.measure(fitter, drawn, shown, frames, ticks.frame_index)
+            return (*measured, *observed.joints, *planted)
+
+        terms = terms_of(predicted, views)
+        probe("clothes.distances")
+        fit = fitter.fit(
+            predicted, views, dt_s, p.fit.iterations - self.work.fewer_iterations, rendered=True,
+            fine=min(self.work.fine, p.fit.fine_iterations), motion=motion, terms=terms,
+        )  # fmt: skip
+        probe("clothes.fit")
+        at = HypothesisContext(
+            self.appearance.solvers, dt_s, frames, ticks, observed.joints,
+            PoseEvidence(self.cameras.classify, terms_of),
+        )  # fmt: skip
+        best = self._hypotheses.improve(
+            ScoredFit(fit, views, terms), at, self._tests_hypotheses(ticks), probe
+        )
+        return self._estimate(best, state.motion, dt_s, frames.t_ns)
+
+    def fit_lower_body(
+        self,
+        state: TrackState,
+        start: MotionState,
+        observed: ClothesObservation | None,
+        dt_s: float,
+        frames: FrameSet,
+        ticks: Ticks,
+        probe: Probe,
+    ) -> ClothesEstimate | None:
+        """Fits legs and head of a body whose trunk and arms, in `start`, come from the shirt; dt_s after `state`."""
+        p, cameras = self.params, self.cameras
+        if cameras.are_new:
+            cameras.mark_body(start)
+            cameras.seed_background()
+        is_new = state.whole is None  # legs that were not observed yet are farther away
+        last = None if is_new else state.motion
+        iterations = (
+            p.start.iterations if is_new else p.guided_iterations - self.work.fewer_iterations
+        )
+        dt_s = NEW_BODY_PRIOR_S if is_new else dt_s
+        trunk_prior = self._trunk_prior(state, dt_s)
+        if not cameras.has_appearance:
+            return self._fit_silhouette(start, last, dt_s, trunk_prior, iterations, ticks)
+        if observed is None:
+            views, rays = cameras.prepare(start, self.searches_everywhere(ticks), no_detection)
+            observed = ClothesObservation(start, views, self.terms.joints.term(self.model, rays))
+        if not observed.views:
+            return None
+        fitter, planted = self.fitter, self._planted()
+
+        def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
+            measured = self.terms.measure(
+                fitter, drawn, shown, frames, ticks.frame_index, _LOWER_REGIONS
+            )
+            return (*measured, *observed.joints, *planted)
+
+        terms = terms_of(observed.drawn, observed.views)
+        probe("clothes.distances")
+        fit = fitter.fit(
+            start, observed.views, dt_s, iterations, rendered=observed.drawn is start, fine=1, motion=trunk_prior,
+            terms=terms,
+        )  # fmt: skip
+        probe("clothes.fit")
+        at = HypothesisContext(
+            self.appearance.solvers, dt_s, frames, ticks, observed.joints,
+            PoseEvidence(cameras.classify, terms_of), trunk_prior,
+        )  # fmt: skip
+        best = self._hypotheses.improve(
+            ScoredFit(fit, observed.views, terms), at, self._tests_hypotheses(ticks), probe
+        )
+        return self._estimate(best, last, dt_s, frames.t_ns)
+
+    def start_from(
+        self, body: MotionState, frames: FrameSet, ticks: Ticks
+    ) -> ClothesEstimate | None:
+        """Starts from a body of another tracker, if the pictures show its outline; the rest becomes background."""
+        cameras = self.cameras
+        cameras.mark_body(body)
+        if cameras.outline_contrast() < self.params.least_contrast:
+            return None
+        cameras.seed_background()
+        cameras.update_foreground()
+        self.appearance.learn_first(body, cameras)
+        fitter, views = self.fitter, cameras.classify(body)
+        if not views:
+            return None
+        fit = fitter.fit(
+            body, views, NEW_BODY_PRIOR_S, self.params.fit.iterations,
+            terms=self.terms.measure(fitter, body, views, frames, ticks.frame_index),
+        )  # fmt: skip
+        return self._estimate(ScoredFit(fit, views, ()), None, NEW_BODY_PRIOR_S)
+
+    def _fit_silhouette(
+        self,
+        start: MotionState,
+        last: MotionState | None,
+        dt_s: float,
+        trunk_prior: Floats,
+        iterations: int,
+        ticks: Ticks,
+    ) -> ClothesEstimate | None:
+        """Fits a person without an appearance model to the foreground, then learns the appearance."""
+        p, cameras = self.params, self.cameras
+        cameras.mark_body(start)
+        cameras.renew_before(self.searches_everywhere(ticks))
+        views = cameras.silhouettes(start)
+        if not views:
+            return None
+        fit = self.silhouettes.fit(
+            start, views, dt_s, iterations, fine=1, motion=trunk_prior, terms=(self.terms.floor,)
+        )  # fmt: skip
+        if fit.explained >= p.learn_explained:
+            self.appearance.learn_first(fit.state, cameras)
+        return self._estimate(ScoredFit(fit, views, ()), last, dt_s)
+
+    def _planted(self) -> tuple[Term, ...]:
+        """The term that holds planted feet."""
+        joints = self._feet.joints
+        if not len(joints):
+            return ()
+        return (PlantedTerm(self.model, joints, self._feet.places_m, self.params.planted),)
+
+    def _estimate(
+        self, scored: ScoredFit, last: MotionState | None, dt_s: float, t_ns: int | None = None
+    ) -> ClothesEstimate | None:
+        fit, changed = scored.fit, scored.changed
+        if not _is_plausible(fit, self.params):
+            return None
+        velocity = np.zeros(self.model.n_pose)
+        if last is not None:
+            velocity = _velocity_of(self.model, self.params, fit, last, dt_s, changed)
+        if t_ns is not None:
+            self._feet.update(self.fitter.joints(fit.state)[0], t_ns)
+        views = tuple(scored.views)
+        motion = replace(fit.state, velocity=velocity)
+        return ClothesEstimate(fit, motion, views, self.cameras.names(views), changed)
+
+    def _trunk_prior(self, state: TrackState, dt_s: float) -> Floats:
+        """Information (n_pose,n_pose) of a prediction whose trunk and arms come from the shirt."""
+        diagonal = np.zeros(self.model.n_pose)
+        diagonal[:3] = self.params.guided_sd_m**-2
+        diagonal[3 : upper_body().n_pose] = self.params.guided_sd_rad**-2
+        if state.whole is None:
+            return np.diag(
+                diagonal + 1.0 / (self.fitter.prediction_sd**2 * max(dt_s / TICK_S, 0.5))
+            )
+        p = self.params
+        motion = prediction_prior(
+            self.fitter, state.whole, state.motion.velocity, dt_s, p.limbs.uncertain_arm, p.motion
+        )
+        return np.asarray(motion + np.diag(diagonal))
+
+
+def _is_plausible(fit: Fit, params: ClothesParams) -> bool:
+    """True if enough of the body agrees with the pictures."""
+    # every second pixel was counted
+    enough = 2.0 * fit.matched.sum() >= params.least_body_px
+    return fit.explained >= params.live_explained and bool(enough)
+
+
+def _velocity_of(
+    model: BodyModel,
+    params: ClothesParams,
+    fit: Fit,
+    last: MotionState,
+    dt_s: float,
+    changed: Sequence[str],
+) -> Floats:
+    """Velocity (n_pose,) per second since the last state; 0 for relocated parts."""
+    columns = [slice(None) if part == WHOLE else model.space.columns(part) for part in changed]
+    return velocity_between(model, last, fit, dt_s, columns, params.velocity)
