@@ -5,17 +5,16 @@ import pytest
 
 from mocapd.body.arrays import PosedJoints, camera_arrays, plain
 from mocapd.body.bones import NAMES
+from mocapd.body.derivative_kernels import joint_shape_derivatives, surface_row
 from mocapd.body.model import build_model, shaped
 from mocapd.body.posing_kernels import (
     difference,
     forward_kinematics,
-    joint_shape_derivatives,
     quat_exp,
     quat_log,
     quat_multiply,
     retract,
     skin_and_project,
-    surface_row,
 )
 from mocapd.body.skeleton import INDEX, N_JOINTS, PARENTS, joint_positions
 from mocapd.body.surface import LEGS, posed_vertices

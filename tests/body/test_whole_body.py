@@ -6,17 +6,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from mocapd.body.arrays import PosedJoints, plain
+from mocapd.body.derivative_kernels import joint_shape_derivatives, surface_row
 from mocapd.body.joint_limit_kernels import limit_residuals
 from mocapd.body.joint_limits import from_swing_twist, soft_limit
 from mocapd.body.model import build_model, shape_of, shaped
 from mocapd.body.pose_space import full_body
-from mocapd.body.posing_kernels import (
-    difference,
-    forward_kinematics,
-    joint_shape_derivatives,
-    retract,
-    surface_row,
-)
+from mocapd.body.posing_kernels import difference, forward_kinematics, retract
 from mocapd.body.shape import FACTORS, WHOLE_FACTORS, BodyShape, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS, standard_skeleton
 from mocapd.body.surface import LEFT_LEG, LEGS, RIGHT_LEG, Surface

@@ -86,7 +86,7 @@ class CollisionTerm:
             self._plain_slices = plain(self._slices)
         return self._slices
 
-    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats, /) -> float:
         """See `Term`."""
         self.slices(body)
         cost: float = push_arms_out(

@@ -36,7 +36,7 @@ class DistanceTerm:
         self._model, self._measured = model, measured
         self._information = 1.0 / measured.sd_m**2
 
-    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats, /) -> float:
         """See `Term`."""
         m, points = self._model, self._measured
         cost: float = pull_along_rays(

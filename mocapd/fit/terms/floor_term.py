@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.arrays import PosedJoints
+from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES
 from mocapd.body.shaping import Shaped
@@ -37,12 +37,11 @@ class FloorTerm:
         # a picture shows how high a shoe is, and hardly whether its heel is up
         self._feet = np.array([INDEX[side + bone] for side in SIDES for bone in ("Foot", "Toes")])
 
-    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats, /) -> float:
         """See `Term`."""
         m, p = self._model, self._params
         cost: float = stand_on_floor(
             self._feet, body.rest[self._feet, 1], (1.0 / p.under_sd_m**2, 1.0 / p.on_floor_sd_m**2),
-            p.together_m, p.jump_m, body.rest, m.parents, m.joint_of_group, m.group_of_joint,
-            m.share_of_joint, posed.R, posed.joints, H, b,
+            p.together_m, p.jump_m, plain(m.articulation), plain(posed), H, b,
         )  # fmt: skip
         return cost

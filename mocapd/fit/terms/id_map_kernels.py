@@ -159,7 +159,7 @@ def _pull_robustly(
     pull: Array, dx: float, dy: float, grid_px: float, weight: float, r2_robust: float
 ) -> float:
     """Add a row of dx, dy [px of the grid] to `pull` (5,); its cost."""
-    r = grid_px * max(np.sqrt(dx * dx + dy * dy), 1e-3)
+    r: float = grid_px * max(np.sqrt(dx * dx + dy * dy), 1e-3)
     f = r2_robust / (r2_robust + r * r)
     _pull(pull, dx, dy, weight * f * f, r)
     return weight * r * r * f

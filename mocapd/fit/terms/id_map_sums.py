@@ -5,11 +5,17 @@ from numpy.typing import NDArray
 
 from mocapd.body.areas import N_AREAS
 from mocapd.body.arrays import PinholeArrays, PosedJoints, plain
+from mocapd.body.derivative_kernels import joint_shape_derivatives
 from mocapd.body.model import BodyModel
-from mocapd.body.posing_kernels import joint_shape_derivatives
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.surface_labels import SurfaceLabels
-from mocapd.fit.terms.id_map_kernels import AreaCounts, ComparedPictures, Search, pull_triangles
+from mocapd.fit.terms.id_map_kernels import (
+    AreaCounts,
+    ComparedPictures,
+    LabelledTriangles,
+    Search,
+    pull_triangles,
+)
 from mocapd.fit.terms.triangle_rows_kernels import add_triangle_rows
 from mocapd.types import Floats
 
@@ -38,7 +44,9 @@ class CameraSums:
         self.by_size = {n: (H[: n * n].reshape(n, n), b[:n]) for n in (model.n_pose, P)}
         self.counts = AreaCounts(*(np.zeros(N_AREAS) for _ in range(3)))
         self.cost = 0.0
-        self._labelled = (model.triangles, labels.area, labels.arms, labels.arms_start)
+        self._labelled = plain(
+            LabelledTriangles(model.triangles, labels.area, labels.arms, labels.arms_start)
+        )
         self._surface, self._articulation = plain(model.surface), plain(model.articulation)
         self._pulls = np.zeros((len(model.triangles), 5))
         self._d_joints = np.zeros((model.n_shape, N_JOINTS, 3))

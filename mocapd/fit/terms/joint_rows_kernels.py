@@ -6,7 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.posing_kernels import surface_row_of_arrays
+from mocapd.body.arrays import Articulation, PosedJoints
+from mocapd.body.derivative_kernels import joint_row
 from mocapd.fit.terms.point_rows_kernels import add_row
 
 Array = NDArray[np.float64]
@@ -24,13 +25,8 @@ def pull_at_joints(
     weights: tuple[float, float, float],
     camera_R: Array,
     camera_t: Array,
-    rest: Array,
-    parents: Ints,
-    joint_of_group: Ints,
-    group_of_joint: Ints,
-    share_of_joint: Array,
-    R: Array,
-    joints: Array,
+    articulation: Articulation,
+    posed: PosedJoints,
     H: Array,
     b: Array,
 ) -> float:
@@ -41,18 +37,15 @@ def pull_at_joints(
     deviations leave a quarter of the weight, and of depth beside place.
     """
     weight, robust2, depth_weight = weights[0], weights[1] * weights[1], weights[2]
-    carrier, whole = np.empty(1, np.int32), np.ones(1)
-    nothing = np.zeros((0, 3))
-    no_rest = np.zeros((0, rest.shape[0], 3))
+    joints = posed[2]
     hips_z = camera_t[2]
     for i in range(3):
         hips_z += camera_R[2, i] * joints[0, i]
     cost = 0.0
     across = np.empty((2, 3))
-    rows = np.empty((4, 3 + 3 * joint_of_group.shape[0]))
+    rows = np.empty((4, 3 + 3 * articulation[3].shape[0]))
     for n in range(seen.shape[0]):
         joint = seen[n]
-        carrier[0] = max(parents[joint], 0)  # a joint is a point of the bone above it
         x, y, z = camera_t[0], camera_t[1], camera_t[2]
         for i in range(3):
             x += camera_R[0, i] * joints[joint, i]
@@ -68,10 +61,7 @@ def pull_at_joints(
             across[0, i] = camera_R[0, i] - x / z * camera_R[2, i]
             across[1, i] = camera_R[1, i] - y / z * camera_R[2, i]
         for k in range(2):
-            surface_row_of_arrays(
-                rest[joint], carrier, whole, nothing, across[k], rest, parents, joint_of_group,
-                group_of_joint, share_of_joint, R, joints, no_rest, no_rest, 0, rows[k],
-            )  # fmt: skip
+            joint_row(joint, across[k], articulation, posed, rows[k])
         # the two rows made independent: information = L L^T
         l11 = math.sqrt(xx)
         l21 = xy_ / l11
@@ -87,10 +77,7 @@ def pull_at_joints(
         off = farther_m[n] - (z - hips_z)
         m2 = depth_information[n] * off * off
         trust = 1.0 / (1.0 + m2 / robust2)
-        surface_row_of_arrays(
-            rest[joint], carrier, whole, nothing, camera_R[2], rest, parents, joint_of_group,
-            group_of_joint, share_of_joint, R, joints, no_rest, no_rest, 0, rows[0],
-        )  # fmt: skip
+        joint_row(joint, camera_R[2], articulation, posed, rows[0])
         for q in range(3):
             rows[0, q] = 0.0  # hips and joint move together
         add_row(rows[0], off, depth_weight * weight * depth_information[n] * trust * trust, H, b)

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from mocapd.body.arrays import PosedJoints
+from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import INDEX, N_JOINTS
@@ -126,15 +126,15 @@ class JointTerm:
         turn = np.arctan2(mine[2], mine[0]) - np.arctan2(measured[2], measured[0])
         return float(np.remainder(turn + np.pi, 2.0 * np.pi) - np.pi) if measured.any() else 0.0
 
-    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+    def add(self, posed: PosedJoints, _: Shaped, H: Floats, b: Floats, /) -> float:
         """See `Term`."""
         m, p = self._model, self._params
         cost = 0.0
         for rays in self.rays:
             cost += pull_at_joints(
                 rays.joints, rays.xy, rays.information, rays.farther_m, rays.depth_information,
-                (p.weight, p.robust, p.depth_weight), rays.camera.R, rays.camera.t_m, body.rest, m.parents,
-                m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, H, b,
+                (p.weight, p.robust, p.depth_weight), rays.camera.R, rays.camera.t_m, plain(m.articulation),
+                plain(posed), H, b,
             )  # fmt: skip
         return cost
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.arrays import PosedJoints
+from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES
 from mocapd.body.shaping import Shaped
@@ -37,11 +37,10 @@ class PlantedTerm:
         sd_m = np.where(np.isin(joints, _TOES), self._params.toes_sd_m, self._params.ankle_sd_m)
         self._information = 1.0 / sd_m**2
 
-    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+    def add(self, posed: PosedJoints, _: Shaped, H: Floats, b: Floats, /) -> float:
         """See `Term`."""
         m, p = self._model, self._params
         cost: float = hold_on_floor(
-            self._joints, self._places_m, self._information, p.robust_m, body.rest, m.parents,
-            m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, H, b,
+            self._joints, self._places_m, self._information, p.robust_m, plain(m.articulation), plain(posed), H, b
         )  # fmt: skip
         return cost

@@ -4,7 +4,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.posing_kernels import surface_row_of_arrays
+from mocapd.body.arrays import Articulation, PosedJoints
+from mocapd.body.derivative_kernels import joint_row, surface_row_of_arrays
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -30,13 +31,8 @@ def stand_on_floor(
     information: tuple[float, float],
     together_m: float,
     jump_m: float,
-    rest: Array,
-    parents: Ints,
-    joint_of_group: Ints,
-    group_of_joint: Ints,
-    share_of_joint: Array,
-    R: Array,
-    joints: Array,
+    articulation: Articulation,
+    posed: PosedJoints,
     H: Array,
     b: Array,
 ) -> float:
@@ -47,10 +43,8 @@ def stand_on_floor(
     standing has lost half of its weight.
     """
     up = np.array([0.0, 1.0, 0.0])
-    carrier, whole = np.empty(1, np.int32), np.ones(1)
-    nothing = np.zeros((0, 3))
-    no_rest = np.zeros((0, rest.shape[0], 3))
-    row = np.empty(3 + 3 * joint_of_group.shape[0])
+    joints = posed[2]
+    row = np.empty(3 + 3 * articulation[3].shape[0])
     lowest = np.inf
     for f in range(feet.shape[0]):
         lowest = min(lowest, joints[feet[f], 1] - heights_m[f])
@@ -63,11 +57,7 @@ def stand_on_floor(
             weight = information[1] / (1.0 + (above / jump_m) ** 2)
         else:
             continue
-        carrier[0] = parents[feet[f]]  # a joint is a point of the bone above it
-        surface_row_of_arrays(
-            rest[feet[f]], carrier, whole, nothing, up, rest, parents, joint_of_group,
-            group_of_joint, share_of_joint, R, joints, no_rest, no_rest, 0, row,
-        )  # fmt: skip
+        joint_row(feet[f], up, articulation, posed, row)
         add_row(row, -above, weight, H, b)
         cost += weight * above * above
     return cost
@@ -79,34 +69,23 @@ def hold_on_floor(
     places_m: Array,
     information: Array,
     robust_m: float,
-    rest: Array,
-    parents: Ints,
-    joint_of_group: Ints,
-    group_of_joint: Ints,
-    share_of_joint: Array,
-    R: Array,
-    joints: Array,
+    articulation: Articulation,
+    posed: PosedJoints,
     H: Array,
     b: Array,
 ) -> float:
     """Add two rows for each joint of `held` (F,), which pull it to its place on the floor, places_m (F,2) along x and z, with
     information (F,) [1/m^2]; the robust cost. A joint that is robust_m away has a quarter of its weight (Geman-McClure)."""
-    carrier, whole = np.empty(1, np.int32), np.ones(1)
-    nothing = np.zeros((0, 3))
-    no_rest = np.zeros((0, rest.shape[0], 3))
-    row, along = np.empty(3 + 3 * joint_of_group.shape[0]), np.zeros(3)
+    joints = posed[2]
+    row, along = np.empty(3 + 3 * articulation[3].shape[0]), np.zeros(3)
     cost = 0.0
     for f in range(held.shape[0]):
         joint = held[f]
-        carrier[0] = parents[joint]  # a joint is a point of the bone above it
         x, z = places_m[f, 0] - joints[joint, 0], places_m[f, 1] - joints[joint, 2]
         trust = 1.0 / (1.0 + (x * x + z * z) / (robust_m * robust_m))
         for axis in range(2):
             along[0], along[2] = 1.0 - axis, float(axis)
-            surface_row_of_arrays(
-                rest[joint], carrier, whole, nothing, along, rest, parents, joint_of_group,
-                group_of_joint, share_of_joint, R, joints, no_rest, no_rest, 0, row,
-            )  # fmt: skip
+            joint_row(joint, along, articulation, posed, row)
             add_row(row, z if axis else x, information[f] * trust * trust, H, b)
         cost += information[f] * (x * x + z * z) * trust
     return cost

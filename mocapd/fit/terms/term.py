@@ -15,7 +15,7 @@ class Term(Protocol):
 
     is_measured: bool
 
-    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats) -> float:
+    def add(self, posed: PosedJoints, body: Shaped, H: Floats, b: Floats, /) -> float:
         """Add its rows at this pose to H (P,P) and b (P,), the pose's unknowns first: the step H^-1 b makes the
         residuals smaller. Its cost, in the unit of the id maps' rows: information times squared residual."""
         ...

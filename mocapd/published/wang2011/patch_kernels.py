@@ -5,7 +5,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import Articulation, PinholeArrays, PosedJoints, TriangleArrays
-from mocapd.body.posing_kernels import surface_row
+from mocapd.body.derivative_kernels import surface_row
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
