@@ -9,7 +9,7 @@ from lab.compared.ablations import CLOTHES_ABLATIONS, HECHT2009_ABLATIONS
 from lab.compared.compare import BASELINE
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.published.hecht2009.params import Params as Hecht2009Params
-from mocapd.published.wang2011.params import published
+from mocapd.published.wang2011.params import paper_params
 from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.session.worker_thread import each_camera
 from mocapd.trackers.registry import Resources, build
@@ -36,8 +36,8 @@ def ready_rival(rival: Rival, resources: Resources, calibration: Calibration) ->
 RIVALS: Mapping[str, Mapping[str, Rival]] = MappingProxyType(
     {
         "shirt": {
-            "paper": Rival("wang2011", published()),
-            BASELINE: Rival("wang2011", published(baseline=True)),
+            "paper": Rival("wang2011", paper_params()),
+            BASELINE: Rival("wang2011", paper_params(baseline=True)),
         },
         "markerless": {
             "paper": Rival("hecht2009", Hecht2009Params()),

@@ -17,7 +17,7 @@ from mocapd.published.rao_hodges.limb_weight import (
     SilhouetteWeight,
     match_points,
     places_within,
-    posed,
+    pose_limb,
 )
 from mocapd.published.rao_hodges.point_cloud import point_cloud
 from mocapd.types import Floats
@@ -63,7 +63,7 @@ def chains() -> dict[str, LimbChain]:
 
 def points_in(chain: LimbChain, angles: Floats, count: int, rng: np.random.Generator) -> Floats:
     """(P,3) [m]: random points of the ellipsoids of a pose (D,), each ellipsoid as many as its volume deserves."""
-    pose, a = posed(chain, angles, _ROOT_R, _ROOT_M), chain.arrays
+    pose, a = pose_limb(chain, angles, _ROOT_R, _ROOT_M), chain.arrays
     volume = a.radii_m.prod(axis=1)
     which = rng.choice(len(volume), count, p=volume / volume.sum())
     way = rng.standard_normal((count, 3))
@@ -121,20 +121,20 @@ def _weigher(
     if variant.silhouettes:
         cameras = cameras_around(_ROOT_M)
         in_pictures = SilhouetteWeight(
-            cameras, silhouettes_of(chain, posed(chain, true, _ROOT_R, _ROOT_M), cameras)
+            cameras, silhouettes_of(chain, pose_limb(chain, true, _ROOT_R, _ROOT_M), cameras)
         )
-        return lambda angles: in_pictures(chain, posed(chain, angles, _ROOT_R, _ROOT_M))
+        return lambda angles: in_pictures(chain, pose_limb(chain, angles, _ROOT_R, _ROOT_M))
     volume_m3 = 4.0 / 3.0 * np.pi * chain.arrays.radii_m.prod(axis=1).sum()
     cloud = point_cloud(points_in(chain, true, variant.points, rng), variant.points / volume_m3)
-    return lambda angles: match_points(chain, posed(chain, angles, _ROOT_R, _ROOT_M), cloud).weight(
-        variant.converse
-    )
+    return lambda angles: match_points(
+        chain, pose_limb(chain, angles, _ROOT_R, _ROOT_M), cloud
+    ).weight(variant.converse)
 
 
 def _exchanged(chain: LimbChain, found: Floats, true: Floats) -> tuple[int, int]:
     """Whether the lower legs are apart, and whether each is where the other should be."""
     mine, its = (
-        places_within(chain, posed(chain, one, _ROOT_R, _ROOT_M))[0].mean(axis=1)
+        places_within(chain, pose_limb(chain, one, _ROOT_R, _ROOT_M))[0].mean(axis=1)
         for one in (found, true)
     )
     between_m = np.linalg.norm(its[list(_LEFT)] - its[list(_RIGHT)], axis=1).mean()

@@ -9,7 +9,7 @@ from mocapd.clock import nanoseconds
 class TrustParams:
     """quality: share of the cue's evidence that the body explains, 0..1.
 
-    A cue becomes trusted after confirm_s [s] at `good` or better, seen by least_cameras or more. It loses trust after
+    A cue becomes trusted after confirm_s [s] at `good` or better in least_cameras or more. It loses trust after
     doubt_s [s] below `poor`.
     """
 

@@ -18,7 +18,7 @@ class PlantedFeetParams:
     """Hysteresis of a foot's contact with the floor.
 
     Planted: ankle and toes have stayed within near_m of their mean place, and within low_m of their height in the
-    standing T-pose, for still_s. The place follows them with time constant follows_s. Lifted: one of them is farther than
+    T-pose, for still_s. The place follows them with time constant follows_s. Lifted: one of them is farther than
     far_m from the place or higher than high_m.
     """
 
@@ -34,7 +34,7 @@ class PlantedFeet:
     """Tracks each foot's mean place and how long it has stayed there."""
 
     def __init__(self, rest_m: Floats, params: PlantedFeetParams) -> None:
-        """rest_m (J,3): joints of the T-pose, standing on the floor [m]."""
+        """rest_m (J,3): joints of the T-pose on the floor [m]."""
         self._params, self._rest_height_m = params, rest_m[_FEET, 1]
         self.reset()
 

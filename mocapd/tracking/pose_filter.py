@@ -6,8 +6,8 @@ a low gain; motion keeps its direction. After a change of the carrying cues, or 
 blends the published pose towards the new estimate at bounded speed.
 
 A bone in steady rotation is published with a lag, since the filter keeps less than its full speed. With gain f on the
-rotation, gain l on the speed and share g of the speed kept over a frame interval dt, the lag is dt (1/f - 1) (1 - g) / (1
-- g + g l). The correction moves along with the body and adds no lag.
+rotation, gain l on the speed and share g of the speed that remains after a frame interval dt, the lag is
+dt (1/f - 1) (1 - g) / (1 - g + g l). The correction moves along with the body and adds no lag.
 """
 
 from collections.abc import Collection
@@ -36,7 +36,7 @@ _KIND_OF = {
 _RESET_AFTER_S = 0.5  # a longer gap resets the filter
 _SHORTEST_TICKS = 0.1  # least time step, also between frames of equal time
 _LEAST_STEP_M = 0.01  # of a joint in a frame, however short
-_HALVINGS = 10  # of what is left: the way of a metre is known to a millimetre
+_HALVINGS = 10  # bisection steps: resolves a step of a metre to a millimetre
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,9 +49,9 @@ class BoneGains:
     doubtful_rad_s: float  # greatest angular speed at low confidence
     sure_rad_s: float = 20.0  # the same at full gain
     power: float = 1.0  # exponent of the gain between both; above 1 lowers it
-    goes_on: float = 0.75  # share of its speed kept to the next frame
+    goes_on: float = 0.75  # share of its speed that remains at the next frame
     noise_rad: float = 0.15  # how far from where it is expected a bone that stays is found at most
-    trust_s: float = 0.35  # who was not confirmed at all is fully believed no sooner
+    trust_s: float = 0.35  # until an unconfirmed bone is fully trusted again
 
 
 # without the shirt: at equal confidence an arm's error and jumps are twice those of a leg
@@ -275,30 +275,30 @@ class PoseFilter:
         )
 
 
-def _lag_s(gap_s: float, follows: Floats, learned: Floats, kept: Floats, trust: Floats) -> float:
+def _lag_s(gap_s: float, follows: Floats, learned: Floats, keep: Floats, trust: Floats) -> float:
     """See the module; follows, learned, retained (J,): f, l and g of each bone."""
-    lags_s = gap_s * (1.0 / follows - 1.0) * (1.0 - kept) / (1.0 - kept + kept * learned)
+    lags_s = gap_s * (1.0 / follows - 1.0) * (1.0 - keep) / (1.0 - keep + keep * learned)
     return float(np.average(lags_s, weights=trust + 1e-6))
 
 
 def _correction_between(
-    published: Pose, known: Pose, skeleton: Skeleton, params: PoseFilterParams
+    published: Pose, target: Pose, skeleton: Skeleton, params: PoseFilterParams
 ) -> PoseCorrection:
-    turn = rotations.multiply(published.quats_xyzw, rotations.inverse(known.quats_xyzw))
-    way_m = joint_positions(skeleton, published) - joint_positions(skeleton, known)
+    turn = rotations.multiply(published.quats_xyzw, rotations.inverse(target.quats_xyzw))
+    way_m = joint_positions(skeleton, published) - joint_positions(skeleton, target)
     farthest_m = float(np.linalg.norm(way_m, axis=1).max())
     speed_m_s = max(farthest_m / params.approach_s, params.approach_m_s)
-    return PoseCorrection(published.root_m - known.root_m, rotations.log(turn), speed_m_s)
+    return PoseCorrection(published.root_m - target.root_m, rotations.log(turn), speed_m_s)
 
 
 def _shrink_correction(
-    known: Pose, offset: PoseCorrection, skeleton: Skeleton, step_m: float
+    target: Pose, offset: PoseCorrection, skeleton: Skeleton, step_m: float
 ) -> PoseCorrection | None:
     """The correction, reduced so far that no joint moves by more than step_m beyond its own motion; None once it is zero."""
-    before_m = joint_positions(skeleton, offset.of(known, offset.share))
+    before_m = joint_positions(skeleton, offset.of(target, offset.share))
 
     def is_near(share: float) -> bool:
-        joints_m = joint_positions(skeleton, offset.of(known, share))
+        joints_m = joint_positions(skeleton, offset.of(target, share))
         return bool((np.linalg.norm(joints_m - before_m, axis=1) <= step_m).all())
 
     if is_near(0.0):
@@ -314,7 +314,7 @@ def _shrink_correction(
 
 
 def _bone_ends() -> tuple[Ints, list[str]]:
-    """The joint (J,) at the end of each bone, whose confidence counts for the bone's direction; and each bone's kind."""
+    """The joint (J,) at the end of each bone, which sets the confidence of its direction; and each bone's kind."""
     ends, kinds = [], []
     for name in NAMES:
         side = next((s for s in ("left", "right") if name.startswith(s)), "")

@@ -9,8 +9,8 @@ from mocapd.body.posing_kernels import quat_exp, quat_inverse, quat_log, quat_mu
 Array = NDArray[np.float64]
 
 # of `moving_share`
-_KEEPS = 0.85  # share of the mean way that is kept a tick
-_LASTS = 0.95  # share of the remembered speed that is kept a tick
+_KEEPS = 0.85  # decay of the mean way per tick
+_LASTS = 0.95  # decay of the stored speed per tick
 _LEAST = 0.05  # share of its way that noise goes
 _FAST_HZ = 10.0  # what goes this many times as far as noise in a second surely moves
 

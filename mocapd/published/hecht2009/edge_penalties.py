@@ -37,9 +37,9 @@ def edge_penalties(
     """The edge penalty (N,) 0..1 of the visible part of a limb in N places (N,3,3); 1 where nothing is visible."""
     parts = PARTS[limb]
     penalties = limb_penalties(points_m, radii_m(frusta)[list(parts)], parts, views, score)
-    seen = penalties.seen[..., EDGE].sum(axis=0)
-    total = (penalties.seen[..., EDGE] * penalties.mean[..., EDGE]).sum(axis=0)
-    return np.where(seen > 0.0, total / np.maximum(seen, 1e-9), 1.0)
+    visible = penalties.visible[..., EDGE].sum(axis=0)
+    total = (penalties.visible[..., EDGE] * penalties.mean[..., EDGE]).sum(axis=0)
+    return np.where(visible > 0.0, total / np.maximum(visible, 1e-9), 1.0)
 
 
 def mean_edge_penalty(

@@ -127,7 +127,7 @@ class CameraEvidence:
             self._occlusion,
         )  # fmt: skip
 
-    def observed(self) -> RingColours:
+    def ring_colours(self) -> RingColours:
         """The colours of the marked parts on the foreground."""
         return observe(
             self._quads, self._depths_m, self._now.colour, self.person(), self._occlusion,
@@ -169,7 +169,7 @@ class RigEvidence:
 
     def forget_person(self) -> None:
         """Reset the person's appearance."""
-        self.appearance = AppearanceModel.unknown(len(self.each), len(NAMES))
+        self.appearance = AppearanceModel.initial(len(self.each), len(NAMES))
 
     def look(self, frames: FrameSet) -> None:
         """Process the pictures. Raises ConfigError when a size is not the calibration's."""

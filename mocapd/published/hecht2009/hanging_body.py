@@ -10,9 +10,9 @@ from mocapd.published.hecht2009.head.head_track import HeadTrack
 from mocapd.published.hecht2009.mass_spring.mass_spring_body import MassSpringBody
 from mocapd.published.hecht2009.mass_spring.simulation import (
     MassSpringState,
-    advanced,
     head_middle,
-    relaxed,
+    relaxed_state,
+    simulate,
     with_head,
 )
 from mocapd.published.hecht2009.params import FLOOR_M, Params
@@ -47,11 +47,11 @@ def hang(
         moved_m = float(np.linalg.norm(head_middle(body, last.state) - middle))
         if turned < params.rehang_rad and moved_m < params.rehang_m:
             state = with_head(body, last.state, middle, params.simulation)
-            state = advanced(body, state, dt_s, floor_m=FLOOR_M, params=params.simulation)
+            state = simulate(body, state, dt_s, floor_m=FLOOR_M, params=params.simulation)
             return replace(last, state=state)
     if facing is None:
         facing = _towards_cameras_rad(cameras, middle)
-    return HangingBody(relaxed(body, middle, facing, FLOOR_M, params.simulation), facing)
+    return HangingBody(relaxed_state(body, middle, facing, FLOOR_M, params.simulation), facing)
 
 
 def _towards_cameras_rad(cameras: Sequence[Camera], middle_m: Floats) -> float:

@@ -26,18 +26,17 @@ from mocapd.published.hecht2009.evidence import RigEvidence
 from mocapd.published.hecht2009.hanging_body import HangingBody, hang
 from mocapd.published.hecht2009.head.head_track import HeadState, HeadTrack
 from mocapd.published.hecht2009.head.head_tracker import HeadTracker
-from mocapd.published.hecht2009.head_of_standing import StandingHead, head_of_standing
 from mocapd.published.hecht2009.mass_spring.body_points import LIMBS, N_POINTS
 from mocapd.published.hecht2009.mass_spring.frusta import NAMES
 from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
 from mocapd.published.hecht2009.mass_spring.simulation import (
     MassSpringState,
-    advanced,
     confident_masses,
     head_middle,
     project_limb,
-    projected,
+    project_onto_constraints,
     resting,
+    simulate,
     with_head,
     with_points,
 )
@@ -48,6 +47,7 @@ from mocapd.published.hecht2009.mass_spring.skeleton_conversion import (
 from mocapd.published.hecht2009.params import FLOOR_M, Params
 from mocapd.published.hecht2009.part_confidence import joint_confidence, joint_uncertainty_m
 from mocapd.published.hecht2009.stances import stances_of
+from mocapd.published.hecht2009.upright_head import UprightHead, find_upright_head
 from mocapd.tracking.base import Probe, Track, lost_body, no_probe, require_stature
 from mocapd.tracking.tracking_state import (
     TrackingState,
@@ -62,7 +62,7 @@ _NEVER_S = 1e9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Known:
+class _TrackedPerson:
     """State of a tracked person. head_sd_m: of the head's position; before (11,): each part's share on the foreground;
     quality: 0..1."""
 
@@ -107,8 +107,8 @@ class Hecht2009Tracker:
         self._rng = np.random.default_rng(self.params.seed)
         self._near = near
         self._hanging: HangingBody | None = None
-        self._standing: StandingHead | None = None
-        self._known: _Known | None = None
+        self._upright_head: UprightHead | None = None
+        self._person: _TrackedPerson | None = None
         self._last_ns: int | None = None
         self._turn = 0
 
@@ -116,60 +116,62 @@ class Hecht2009Tracker:
         """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
         require_stature(shape, self._stature_m)
         if not np.array_equal(shape.factors, self._body.shape.factors):
-            self._body = self._body.sized(shape)
+            self._body = self._body.with_shape(shape)
         self._turn += 1
         since_s = _NEVER_S if self._last_ns is None else seconds(frames.t_ns - self._last_ns)
         self._last_ns = frames.t_ns
         if since_s > self.params.too_old_s:
-            self._hanging = self._known = None
+            self._hanging = self._person = None
             self._head.reset()
             since_s = TICK_S  # there is no state to predict over the gap
         dt_s = float(np.clip(since_s, 1e-3, self.params.too_old_s))
         self._views.look(frames)
         self.probe("picture")
-        known = self._known
+        person = self._person
         evidence = False
         if self._near is not None and self._views.present:
-            known, self._near = self._taken_over(self._near, frames), None
-        self._mark(None if known is None else known.state.points_m)
+            person, self._near = self._taken_over(self._near, frames), None
+        self._mark(None if person is None else person.state.points_m)
         for view in self._views.present:
             view.update_foreground(self._turn % self.params.uncovered_turns == 0)
         self.probe("background")
         head = self._head.step([view.head_picture() for view in self._views.each], dt_s)
-        head = self._or_standing(head, dt_s)
+        head = self._or_upright(head, dt_s)
         self.probe("head")
         if head.state is HeadState.TRACKED and self._views.present:
-            if known is None:
-                known = self._matched(head, dt_s, frames)
-            if known is not None:
-                seen = self._followed(known, head, dt_s, frames)
-                evidence = seen is not None
-                known = seen if seen is not None else known
-        elif known is None:
+            if person is None:
+                person = self._match(head, dt_s, frames)
+            if person is not None:
+                updated = self._follow(person, head, dt_s, frames)
+                evidence = updated is not None
+                person = updated if updated is not None else person
+        elif person is None:
             self._hanging = None
         tracking = self._tracking.step(frames.t_ns, evidence)
         if tracking is Tracking.LOST and not evidence:
-            known = None
-        self._known = known
+            person = None
+        self._person = person
         self._learn_background()
         self.probe("learn")
         return self._track(tracking, frames, shape)
 
     # --- starting ---
 
-    def _or_standing(self, head: HeadTrack, dt_s: float) -> HeadTrack:
+    def _or_upright(self, head: HeadTrack, dt_s: float) -> HeadTrack:
         """The tracked head, or else that of an upright figure."""
-        if head.state is not HeadState.LOST or self._known is not None:
-            self._standing = None
+        if head.state is not HeadState.LOST or self._person is not None:
+            self._upright_head = None
             return head
-        self._standing = head_of_standing(self._views.present, self._standing, self._stature_m)
-        if self._standing is not None and self._standing.is_sure:
-            self._head.reset(self._standing.middle_m)
-            self._standing = None
+        self._upright_head = find_upright_head(
+            self._views.present, self._upright_head, self._stature_m
+        )
+        if self._upright_head is not None and self._upright_head.is_sure:
+            self._head.reset(self._upright_head.middle_m)
+            self._upright_head = None
             return self._head.step([view.head_picture() for view in self._views.each], dt_s)
         return head
 
-    def _matched(self, head: HeadTrack, dt_s: float, frames: FrameSet) -> _Known | None:
+    def _match(self, head: HeadTrack, dt_s: float, frames: FrameSet) -> _TrackedPerson | None:
         """A body that hangs from the head, if the pictures match it."""
         p = self.params
         cameras = [view.camera for view in self._views.present]
@@ -187,18 +189,20 @@ class Hecht2009Tracker:
         best = {limb: some[int(np.argmin(edges[limb]))] for limb, some in stances.items()}
         for limb, which in LIMBS.items():
             points = with_points(resting(points), which, best[limb]).points_m
-        state = projected(self._body, resting(points), None, FLOOR_M, p.simulation)
+        state = project_onto_constraints(self._body, resting(points), None, FLOOR_M, p.simulation)
         before = self._before(state.points_m)
         self.probe("match")
         edge = float(np.mean([some.min() for some in edges.values()]))
-        if edge > p.match_edge or _mean_known(before) < p.match_before:
+        if edge > p.match_edge or _mean_of_finite(before) < p.match_before:
             return None
         self._hanging = None
         self._views.forget_person()
         clouds = self._clouds_at(state.points_m)
-        return _Known(frames.t_ns, state, clouds, head.sigma_along_m, before, 1.0 - edge, ())
+        return _TrackedPerson(
+            frames.t_ns, state, clouds, head.sigma_along_m, before, 1.0 - edge, ()
+        )
 
-    def _taken_over(self, near: BodyState, frames: FrameSet) -> _Known | None:
+    def _taken_over(self, near: BodyState, frames: FrameSet) -> _TrackedPerson | None:
         """Start from another tracker's body, with the picture outside it as background. The next look tests it."""
         pose = near.pose
         if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(self.params.too_old_s):
@@ -210,7 +214,7 @@ class Hecht2009Tracker:
         self._head.reset(head_middle(self._body, state))
         unknown = np.full(len(NAMES), np.nan)
         clouds = self._clouds_at(state.points_m)
-        return _Known(frames.t_ns, state, clouds, 0.05, unknown, 0.0, ())
+        return _TrackedPerson(frames.t_ns, state, clouds, 0.05, unknown, 0.0, ())
 
     def _clouds_at(self, points_m: Floats) -> dict[str, LimbCloud]:
         p, n_cameras = self.params, len(self._views.each)
@@ -221,52 +225,54 @@ class Hecht2009Tracker:
 
     # --- following ---
 
-    def _followed(
-        self, known: _Known, head: HeadTrack, dt_s: float, frames: FrameSet
-    ) -> _Known | None:
-        """One frame of tracking [Hecht 2009, section III]; None where the pictures do not confirm the body."""
+    def _follow(
+        self, person: _TrackedPerson, head: HeadTrack, dt_s: float, frames: FrameSet
+    ) -> _TrackedPerson | None:
+        """One frame of tracking [Hecht 2009, section III]; None if the pictures do not confirm the body."""
         p, body = self.params, self._body
         assert head.middle_m is not None
-        state = with_head(body, known.state, head.middle_m, p.simulation)
-        state = advanced(body, state, dt_s, floor_m=FLOOR_M, params=p.simulation)
+        state = with_head(body, person.state, head.middle_m, p.simulation)
+        state = simulate(body, state, dt_s, floor_m=FLOOR_M, params=p.simulation)
         self._mark(state.points_m)
         self.probe("simulation")
-        self._learn_appearance(known.clouds, dt_s)
+        self._learn_appearance(person.clouds, dt_s)
         views = self._limb_views()
         self.probe("appearance")
         clouds, spread = {}, np.full(N_POINTS, np.inf)
-        led = state
+        guided = state
         for limb, which in LIMBS.items():
-            cloud = self._limb(limb, known.clouds[limb], state.points_m, views, dt_s)
+            cloud = self._limb(limb, person.clouds[limb], state.points_m, views, dt_s)
             clouds[limb] = cloud
             spread[list(which)] = np.sqrt(cloud.variance_m2)
-            led = with_points(led, which, cloud.mean_m)
+            guided = with_points(guided, which, cloud.mean_m)
         self.probe("particles")
         masses = confident_masses(body.mass_kg, spread, p.variable_kg, p.falloff_per_m)
-        state = projected(body, led, masses, FLOOR_M, p.simulation)
+        state = project_onto_constraints(body, guided, masses, FLOOR_M, p.simulation)
         edge = mean_edge_penalty(body.frusta, state.points_m, self._limb_views(), p.score)
         before = self._before(state.points_m)
         self.probe("projection")
-        share = _mean_known(before)
+        share = _mean_of_finite(before)
         if edge > p.most_edge or share < p.least_before:
             return None
         names = tuple(view.camera.name for view in self._views.present)
         quality = float(np.clip((1.0 - edge) * share, 0.0, 1.0))
-        return _Known(frames.t_ns, state, clouds, head.sigma_along_m, before, quality, names)
+        return _TrackedPerson(
+            frames.t_ns, state, clouds, head.sigma_along_m, before, quality, names
+        )
 
     def _limb(
         self, limb: str, cloud: LimbCloud, points_m: Floats, views: Sequence[LimbView], dt_s: float
     ) -> LimbCloud:
         p, parts = self.params, PARTS[limb]
 
-        def constrained(particles_m: Floats) -> Floats:
+        def constrain(particles_m: Floats) -> Floats:
             return project_limb(
                 self._body, limb, particles_m, points_m, None, FLOOR_M, params=p.simulation
             )
 
         return step_cloud(
             cloud, dt_s, radii_m(self._body.frusta)[list(parts)], parts, views,
-            constrained if p.particle_constraints else None, self._rng, p.motion, p.score,
+            constrain if p.particle_constraints else None, self._rng, p.motion, p.score,
         )  # fmt: skip
 
     def _learn_appearance(self, clouds: dict[str, LimbCloud], dt_s: float) -> None:
@@ -280,13 +286,13 @@ class Hecht2009Tracker:
             sure[upper], sure[lower] = at[:2], at[1:]
         for view in views.present:
             views.appearance = learn(
-                views.appearance, view.index, view.observed(), sure, dt_s, p.appearance
+                views.appearance, view.index, view.ring_colours(), sure, dt_s, p.appearance
             )
 
     # --- evidence ---
 
     def _mark(self, points_m: Floats | None) -> None:
-        """Where the body is in every present picture."""
+        """Marks the body in every present picture."""
         ends = None if points_m is None else ends_m(self._body.frusta, points_m)
         for view in self._views.present:
             view.mark_body(ends, radii_m(self._body.frusta))
@@ -300,9 +306,9 @@ class Hecht2009Tracker:
 
     def _learn_background(self) -> None:
         """Update the backgrounds outside the body, or everywhere without one."""
-        known, views = self._known, self._views.present
-        if known is not None:
-            self._mark(known.state.points_m)
+        person, views = self._person, self._views.present
+        if person is not None:
+            self._mark(person.state.points_m)
         else:
             self._mark(None)
             if self._turn % self.params.absorb_turns:
@@ -314,16 +320,16 @@ class Hecht2009Tracker:
     # --- result ---
 
     def _track(self, tracking: Tracking, frames: FrameSet, shape: BodyShape) -> Track:
-        known = self._known
-        if tracking is Tracking.LOST or known is None:
+        person = self._person
+        if tracking is Tracking.LOST or person is None:
             return Track(lost_body(frames.t_ns, self.name), shape)
-        away_s = seconds(frames.t_ns - known.t_ns)
-        pose = skeleton_from_points(self._body, known.state.points_m).pose
+        away_s = seconds(frames.t_ns - person.t_ns)
+        pose = skeleton_from_points(self._body, person.state.points_m).pose
         spread = np.full(N_POINTS, np.inf)
         for limb, which in LIMBS.items():
-            spread[list(which)] = np.sqrt(known.clouds[limb].variance_m2)
-        uncertainty_m = joint_uncertainty_m(spread, known.head_sd_m)
-        before = np.where(np.isfinite(known.before), known.before, 0.5)
+            spread[list(which)] = np.sqrt(person.clouds[limb].variance_m2)
+        uncertainty_m = joint_uncertainty_m(spread, person.head_sd_m)
+        before = np.where(np.isfinite(person.before), person.before, 0.5)
         body = BodyState(
             t_ns=frames.t_ns,
             tracking=tracking,
@@ -331,13 +337,13 @@ class Hecht2009Tracker:
             pose=pose,
             joints_m=joint_positions(self._body.skeleton, pose),
             confidence=joint_confidence(before, uncertainty_m) * confidence_fade(away_s),
-            cameras=known.cameras if away_s == 0.0 else (),
+            cameras=person.cameras if away_s == 0.0 else (),
             uncertainty_m=grow_uncertainty(uncertainty_m, away_s),
         )
-        return Track(body, shape, known.quality * confidence_fade(away_s))
+        return Track(body, shape, person.quality * confidence_fade(away_s))
 
 
-def _mean_known(shares: Floats) -> float:
+def _mean_of_finite(shares: Floats) -> float:
     """The mean of the values (11,) that are not NaN; 1 without any."""
-    known = shares[np.isfinite(shares)]
-    return float(known.mean()) if len(known) else 1.0
+    finite = shares[np.isfinite(shares)]
+    return float(finite.mean()) if len(finite) else 1.0

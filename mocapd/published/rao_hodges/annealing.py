@@ -92,7 +92,7 @@ def anneal(
             break
         parents = np.resize(chosen, vectors.shape)  # in turn, the heaviest once more
         if p.crossover:
-            parents = _crossed(parents, rng)
+            parents = _crossover(parents, rng)
         sd = space.sd * np.sqrt(p.cooling) ** (p.layers - layer)
         vectors = parents + rng.standard_normal(parents.shape) * sd
     total = float(weights.sum())
@@ -119,7 +119,7 @@ def _select(weights: Floats, rng: np.random.Generator, params: AnnealingParams) 
     return np.minimum(drawn, len(weights) - 1)
 
 
-def _crossed(parents: Floats, rng: np.random.Generator) -> Floats:
+def _crossover(parents: Floats, rng: np.random.Generator) -> Floats:
     """Each number from one of two parents."""
     mates = parents[rng.permutation(len(parents))]
     return np.where(rng.random(parents.shape) < 0.5, parents, mates)

@@ -9,7 +9,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.published.rao_hodges.limb_angles import arm_angles, legs_angles
 from mocapd.published.rao_hodges.limb_chain import LimbChain, arm, legs, trunk, whole_body
-from mocapd.published.rao_hodges.limb_weight import posed
+from mocapd.published.rao_hodges.limb_weight import pose_limb
 from mocapd.types import Floats, Pose
 
 LIMBS = ("legs", "left_arm", "right_arm")  # in the order in which they are tracked
@@ -41,7 +41,7 @@ class BodyChains:
     limbs: dict[str, LimbChain]
     whole: LimbChain
     parts: dict[str, slice]
-    standing_m: float  # height of the hips
+    hips_height_m: float  # in the T-pose
 
 
 def body_chains(shape: BodyShape) -> BodyChains:
@@ -60,7 +60,7 @@ def body_chains(shape: BodyShape) -> BodyChains:
 
 def pose_of(body: BodyChains, place: BodyPlace) -> Pose:
     """The skeleton's pose: spine, neck and collar bones turn with the hips, hands and toes with the bone above."""
-    R = posed(body.whole, place.angles, place.root_turn, place.root_m).R[0]
+    R = pose_limb(body.whole, place.angles, place.root_turn, place.root_m).R[0]
     every = np.broadcast_to(place.root_turn, (N_JOINTS, 3, 3)).copy()
     for bone, turned in zip(body.whole.bones, R, strict=True):
         every[INDEX[bone]] = turned

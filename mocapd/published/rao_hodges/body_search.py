@@ -10,7 +10,7 @@ from mocapd.published.rao_hodges.annealing import SearchSpace, Weigh, anneal
 from mocapd.published.rao_hodges.body_chains import LIMBS, BodyChains, BodyPlace
 from mocapd.published.rao_hodges.limb_chain import LimbChain
 from mocapd.published.rao_hodges.limb_motion import search_space
-from mocapd.published.rao_hodges.limb_weight import PointMatch, match_points, posed
+from mocapd.published.rao_hodges.limb_weight import PointMatch, match_points, pose_limb
 from mocapd.published.rao_hodges.params import Params
 from mocapd.published.rao_hodges.point_cloud import PointCloud
 from mocapd.types import Floats
@@ -27,11 +27,11 @@ _LEAST_POINTS = 60  # of a trunk
 
 def match_body(body: BodyChains, place: BodyPlace, cloud: PointCloud) -> PointMatch:
     """The whole body against the points, as one particle."""
-    pose = posed(body.whole, place.angles, place.root_turn, place.root_m)
+    pose = pose_limb(body.whole, place.angles, place.root_turn, place.root_m)
     return match_points(body.whole, pose, cloud)
 
 
-def followed(
+def follow_body(
     body: BodyChains,
     place: BodyPlace,
     cloud: PointCloud,
@@ -57,7 +57,7 @@ def _limb_weigher(chain: LimbChain, place: BodyPlace, cloud: PointCloud, convers
     """The weight function of a limb's particles, with a fixed root."""
 
     def weigh(angles: Floats) -> Floats:
-        pose = posed(chain, angles, place.root_turn, place.root_m)
+        pose = pose_limb(chain, angles, place.root_turn, place.root_m)
         return match_points(chain, pose, cloud).weight(converse)
 
     return weigh
@@ -83,7 +83,7 @@ def _follow_root(
         return turns @ place.root_turn, place.root_m + steps[:, :3]
 
     def weigh(steps: Floats) -> Floats:
-        match = match_points(body.whole, posed(body.whole, place.angles, *roots(steps)), cloud)
+        match = match_points(body.whole, pose_limb(body.whole, place.angles, *roots(steps)), cloud)
         return PointMatch(match.inside, match.full[:, :n_trunk]).weight(params.root_converse)
 
     found = anneal(np.zeros(6), SearchSpace(sd, -free, free), weigh, rng, params.annealing)
@@ -91,7 +91,7 @@ def _follow_root(
     return BodyPlace(at_m[0], R[0], place.angles)
 
 
-def standing_place(points_m: Floats, stature_m: float) -> Floats | None:
+def upright_place(points_m: Floats, stature_m: float) -> Floats | None:
     """Position (3,) on the floor of an upright person of this stature [m] in points (P,3); None without one."""
     heights = points_m[:, 1] / stature_m
     trunk = points_m[(heights > _BAND[0]) & (heights < _BAND[1])]
@@ -113,7 +113,7 @@ def standing_place(points_m: Floats, stature_m: float) -> Floats | None:
     return np.array([middle[0], 0.0, middle[1]])
 
 
-def started(
+def start_body(
     body: BodyChains, floor_m: Floats, cloud: PointCloud, rng: np.random.Generator, params: Params
 ) -> BodyPlace:
     """The best body at a place (3,) of the floor, over all facing directions, with the arms out or down."""
@@ -123,14 +123,14 @@ def started(
     # straight legs on flat feet distinguish front from back; moved limbs do so less
     careful = replace(params, converse=params.root_converse)
     for _ in range(p.refinements):
-        place, _ = followed(body, place, cloud, p.refinement_dt_s, rng, careful)
+        place, _ = follow_body(body, place, cloud, p.refinement_dt_s, rng, careful)
     return place
 
 
 def _stances(
     body: BodyChains, floor_m: Floats, yaws_rad: Floats, lowered_rad: Sequence[float]
 ) -> list[BodyPlace]:
-    root = floor_m + np.array([0.0, body.standing_m, 0.0])
+    root = floor_m + np.array([0.0, body.hips_height_m, 0.0])
     out = []
     for yaw in yaws_rad:
         R = rotations.to_matrix(rotations.exp(np.array([0.0, yaw, 0.0])))
@@ -145,7 +145,7 @@ def _stances(
 def _heaviest(
     body: BodyChains, places: Sequence[BodyPlace], cloud: PointCloud, params: Params
 ) -> BodyPlace:
-    pose = posed(
+    pose = pose_limb(
         body.whole,
         np.array([place.angles for place in places]),
         np.array([place.root_turn for place in places]),
@@ -157,7 +157,7 @@ def _heaviest(
 
 def _outside(chain: LimbChain, angles: Floats, place: BodyPlace, cloud: PointCloud) -> PointCloud:
     """The points that are in none of a chain's ellipsoids."""
-    pose, a = posed(chain, angles, place.root_turn, place.root_m), chain.arrays
+    pose, a = pose_limb(chain, angles, place.root_turn, place.root_m), chain.arrays
     outside = np.ones(cloud.count, dtype=bool)
     for R, joint, centre, radii in zip(
         pose.R[0], pose.joints_m[0], a.centres_m, a.radii_m, strict=True

@@ -123,9 +123,9 @@ def _leg(skeleton: Skeleton, side: str, h: float) -> list[_Segment]:
     first = 0 if side == "left" else 3
     thigh = (("hip_z", _Z), ("hip_y", _Y), ("hip_x", _X))
     return [
-        _Segment(side + "UpperLeg", -1, hip - hips, thigh, 0.5 * (knee - hip), _upright(hip - knee, _THIGH, h)),
+        _Segment(side + "UpperLeg", -1, hip - hips, thigh, 0.5 * (knee - hip), _vertical_radii(hip - knee, _THIGH, h)),
         _Segment(side + "LowerLeg", first, knee - hip, (("knee_x", _X),), 0.5 * (ankle - knee),
-                 _upright(knee - ankle, _SHANK, h)),
+                 _vertical_radii(knee - ankle, _SHANK, h)),
         _Segment(side + "Foot", first + 1, ankle - knee, (("ankle_x", _X),), np.array(_FOOT_CENTRE) * h,
                  np.array(_FOOT) * h),
     ]  # fmt: skip
@@ -144,7 +144,7 @@ def _trunk(skeleton: Skeleton, h: float) -> list[_Segment]:
     ]
 
 
-def _upright(bone_m: Floats, half: tuple[float, float], h: float) -> Floats:
+def _vertical_radii(bone_m: Floats, half: tuple[float, float], h: float) -> Floats:
     along = 0.5 * _OVERLAP * float(np.linalg.norm(bone_m))
     return np.array([half[0] * h, along, half[1] * h])
 

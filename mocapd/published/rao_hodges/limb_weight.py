@@ -40,7 +40,7 @@ class PointMatch:
         return weight
 
 
-def posed(chain: LimbChain, angles_rad: Floats, roots_R: Floats, roots_m: Floats) -> PosedChain:
+def pose_limb(chain: LimbChain, angles_rad: Floats, roots_R: Floats, roots_m: Floats) -> PosedChain:
     """Of angles (N,D) or (D,), at roots (N,3,3), (N,3) or one root (3,3), (3,); what is given once is for all particles."""
     n, a = max(angles_rad.size // max(chain.n_dof, 1) if angles_rad.ndim > 1 else 1,
                len(roots_m) if roots_m.ndim > 1 else 1), chain.arrays  # fmt: skip
@@ -101,7 +101,7 @@ class SilhouetteWeight:
         """(N,) of particles."""
         places = places_within(chain, pose)
         flat = np.ascontiguousarray(places.reshape(-1, 3))
-        sums, seen_by = np.empty(len(flat), np.float32), np.empty(len(flat), np.uint8)
-        sum_at_points(flat, self._maps, *self._projections, 0.0, sums, seen_by)
+        sums, n_views = np.empty(len(flat), np.float32), np.empty(len(flat), np.uint8)
+        sum_at_points(flat, self._maps, *self._projections, 0.0, sums, n_views)
         weight: Floats = sums.reshape(len(places), -1).mean(axis=1).astype(float) / len(self._maps)
         return weight

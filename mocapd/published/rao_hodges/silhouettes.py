@@ -15,14 +15,14 @@ from mocapd.vision.room_background import RoomBackground
 
 
 class CameraSilhouette:
-    """One camera: its background, and what stands before it (h,w)."""
+    """One camera: its background model and its foreground (h,w)."""
 
     def __init__(self, picture: CameraPicture, params: Params) -> None:
         """picture: of this camera, renewed by its owner."""
         self.picture = picture
         h, w = picture.bgr.shape[:2]
         self.background = RoomBackground(h, w, params.background)
-        self._beside, self._close = (
+        self._wide_margin, self._close_margin = (
             np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
         )
         self.reset()
@@ -57,27 +57,27 @@ class CameraSilhouette:
             if np.isfinite(one).all():
                 corners = np.clip(np.rint(one), -10_000, 10_000).astype(np.int32)
                 cv2.fillConvexPoly(self._drawn, cv2.convexHull(corners), 1)
-        self._body = np.asarray(cv2.dilate(self._drawn, self._beside), np.uint8)
+        self._body = np.asarray(cv2.dilate(self._drawn, self._wide_margin), np.uint8)
 
     def mark_foreground(self, absorb: bool) -> None:
         """Exclude the foreground from learning, because it may be a person; absorb: learn everywhere."""
         self._body[:] = 0
         self._drawn[:] = 0
         if not absorb and not self.background.is_new:
-            known = ((self._before != BACKGROUND) & (self._before != UNKNOWN)).astype(np.uint8)
-            self._body = np.asarray(cv2.dilate(known, self._beside), np.uint8)
+            foreground = ((self._before != BACKGROUND) & (self._before != UNKNOWN)).astype(np.uint8)
+            self._body = np.asarray(cv2.dilate(foreground, self._wide_margin), np.uint8)
 
     def learn(self) -> None:
         """Update the background outside the excluded area."""
         self.background.learn(self.picture.bgr, self._body)
         if self._drawn.any():
             h, w = self.picture.bgr.shape[:2]
-            near = np.asarray(cv2.dilate(self._drawn, self._close), np.uint8)
+            near = np.asarray(cv2.dilate(self._drawn, self._close_margin), np.uint8)
             self.background.learn_unknown(self.picture.bgr, near, (0, 0, w, h))
 
     def seed(self) -> None:
         """Initialise the background from the picture outside the marked body."""
-        near = np.asarray(cv2.dilate(self._drawn, self._close), np.uint8)
+        near = np.asarray(cv2.dilate(self._drawn, self._close_margin), np.uint8)
         self.background.seed(self.picture.bgr, near)
 
     def edges_at_outline(self) -> tuple[float, float]:
@@ -85,9 +85,11 @@ class CameraSilhouette:
         if not self._drawn.any():
             return 0.0, 0.0
         edges = brightness_edges(self.picture.bgr)
-        near, far = (cv2.dilate(self._drawn, kernel) for kernel in (self._close, self._beside))
-        inner = cv2.erode(self._drawn, self._close)
-        farther = cv2.dilate(far, self._beside)
+        near, far = (
+            cv2.dilate(self._drawn, kernel) for kernel in (self._close_margin, self._wide_margin)
+        )
+        inner = cv2.erode(self._drawn, self._close_margin)
+        farther = cv2.dilate(far, self._wide_margin)
         return float(edges[near != inner].mean()), float(edges[farther != far].mean())
 
 
@@ -138,8 +140,8 @@ class RigSilhouettes:
         for one in self.present:
             one.mark_body(places_m)
             found.append(one.edges_at_outline())
-        on, beside = np.array(found).sum(axis=0)
-        return float(on / max(beside, 1e-3))
+        on_outline, off_outline = np.array(found).sum(axis=0)
+        return float(on_outline / max(off_outline, 1e-3))
 
     def learn(self, places_m: Floats | None, absorb: bool) -> None:
         """Update the backgrounds outside a body's ellipsoids, or outside the foreground without a body."""

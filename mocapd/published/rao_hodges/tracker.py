@@ -23,12 +23,12 @@ from mocapd.published.rao_hodges.body_chains import (
     pose_of,
 )
 from mocapd.published.rao_hodges.body_search import (
-    followed,
+    follow_body,
     match_body,
-    standing_place,
-    started,
+    start_body,
+    upright_place,
 )
-from mocapd.published.rao_hodges.limb_weight import places_within, posed
+from mocapd.published.rao_hodges.limb_weight import places_within, pose_limb
 from mocapd.published.rao_hodges.params import Params
 from mocapd.published.rao_hodges.point_cloud import PointCloud, point_cloud
 from mocapd.published.rao_hodges.silhouettes import RigSilhouettes
@@ -46,11 +46,11 @@ _TICK_S = 1.0 / 30.0
 _SURE_M, _BONE_M = (
     0.03,
     0.4,
-)  # of a joint that particles agree on; by which an angle's spread moves a joint
+)  # uncertainty of a joint on which the particles agree; lever arm of an angle's spread
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Followed:
+class _TrackedBody:
     """Carried from frame to frame. spread (18,) of the angles [rad]; full (E,) of the ellipsoids; quality 0..1."""
 
     t_ns: int
@@ -62,7 +62,7 @@ class _Followed:
 
 
 class RaoHodgesTracker:
-    """Three calibrated cameras or more around a whole person; see `mocapd.tracking.base.Tracker` for the promises."""
+    """For three or more calibrated cameras around a whole person; contract: `mocapd.tracking.base.Tracker`."""
 
     name = "rao_hodges"
 
@@ -83,12 +83,12 @@ class RaoHodgesTracker:
         self.reset()
 
     def reset(self, near: BodyState | None = None) -> None:
-        """Forget pose and background. near: a body that is tracked on from where it is."""
+        """Resets pose and background. near: a body to continue from."""
         self._silhouettes.reset()
         self._tracking.reset(None if near is None or near.pose is None else near.t_ns)
         self._rng = np.random.default_rng(self.params.seed)
         self._near = near
-        self._followed: _Followed | None = None
+        self._followed: _TrackedBody | None = None
         self._taken_over = False  # then the background behind the adopted body is unknown
         self._looks = 0
 
@@ -127,18 +127,18 @@ class RaoHodgesTracker:
             return
         place = place_of(near.pose)
         n = self._body.whole
-        self._followed = _Followed(
+        self._followed = _TrackedBody(
             near.t_ns, place, np.zeros(n.n_dof), np.zeros(len(n.bones)), 0.0, ()
         )
         self._silhouettes.seed(self._places(place))
         self._taken_over = True
 
-    def _search(self, last: _Followed | None, frames: FrameSet) -> _Followed | None:
-        """The body in this frame set's hull; None where there is none, or it does not explain the hull."""
+    def _search(self, last: _TrackedBody | None, frames: FrameSet) -> _TrackedBody | None:
+        """The body in this frame set's hull; None without a hull, or if no body explains it."""
         p, views = self.params, self._silhouettes
         masks = views.masks()
         if last is None:
-            floor = standing_place(
+            floor = upright_place(
                 self._hull(self._room_m, masks, p.room_hull).points_m, self._stature_m
             )
             if floor is None:
@@ -146,14 +146,14 @@ class RaoHodgesTracker:
             cloud = self._cloud(floor, masks)
             if cloud.count == 0:
                 return None
-            place = started(self._body, floor, cloud, self._rng, p)
+            place = start_body(self._body, floor, cloud, self._rng, p)
             spread = np.zeros(self._body.whole.n_dof)
         else:
             cloud = self._cloud(last.place.root_m, masks)
             if cloud.count == 0:
                 return None
             dt_s = float(np.clip(seconds(frames.t_ns - last.t_ns), 1e-3, 4.0 * _TICK_S))
-            place, spread = followed(self._body, last.place, cloud, dt_s, self._rng, p)
+            place, spread = follow_body(self._body, last.place, cloud, dt_s, self._rng, p)
         match = match_body(self._body, place, cloud)
         inside, full = float(match.inside[0]), match.full[0]
         self.probe("particles")
@@ -161,13 +161,13 @@ class RaoHodgesTracker:
             return None
         if self._taken_over and views.outline_contrast(self._places(place)) < p.least_contrast:
             return None
-        # a hull is fatter than its body, the less so the more cameras there are
+        # a hull is larger than its body, by less with more cameras
         quality = float(np.sqrt(inside * full.mean()))
         names = tuple(camera.name for camera in views.cameras)
-        return _Followed(frames.t_ns, place, spread, full, quality, names)
+        return _TrackedBody(frames.t_ns, place, spread, full, quality, names)
 
     def _hull(self, box_m: Floats, masks: Sequence[Bytes], params: RayHullParams) -> HullPoints:
-        """Points of the hull within a box; none where hardly any camera looks, as nothing is carved there."""
+        """Points of the hull within a box, except where hardly any camera looks: nothing is carved there."""
         cameras = self._silhouettes.cameras
         hull = hull_points(cameras, masks, box_m, params)
         return hull.where(views_of(cameras, hull.points_m) >= max(2, len(cameras) - 1))
@@ -183,45 +183,45 @@ class RaoHodgesTracker:
 
     def _places(self, place: BodyPlace) -> Floats:
         whole = self._body.whole
-        pose = posed(whole, place.angles, place.root_turn, place.root_m)
+        pose = pose_limb(whole, place.angles, place.root_turn, place.root_m)
         places: Floats = places_within(whole, pose)[0]
         return places
 
     def _learn(self) -> None:
         """Update the backgrounds outside the body, or outside the foreground."""
-        known = self._followed
+        tracked = self._followed
         absorb = self._looks % self.params.absorb_looks == 0
-        self._silhouettes.learn(None if known is None else self._places(known.place), absorb)
+        self._silhouettes.learn(None if tracked is None else self._places(tracked.place), absorb)
 
     def _track(self, tracking: Tracking, frames: FrameSet, shape: BodyShape) -> Track:
-        known = self._followed
-        if tracking is Tracking.LOST or known is None:
+        tracked = self._followed
+        if tracking is Tracking.LOST or tracked is None:
             return Track(lost_body(frames.t_ns, self.name), shape)
-        away_s = seconds(frames.t_ns - known.t_ns)
-        pose = pose_of(self._body, known.place)
-        spread = by_joint(self._body, self._spread_of_ellipsoids(known.spread))
+        away_s = seconds(frames.t_ns - tracked.t_ns)
+        pose = pose_of(self._body, tracked.place)
+        spread = by_joint(self._body, self._spread_of_ellipsoids(tracked.spread))
         body = BodyState(
             t_ns=frames.t_ns,
             tracking=tracking,
             tracker=self.name,
             pose=pose,
             joints_m=joint_positions(skeleton_of(shape), pose),
-            confidence=by_joint(self._body, known.full) * confidence_fade(away_s),
-            cameras=known.cameras if away_s == 0.0 else (),
+            confidence=by_joint(self._body, tracked.full) * confidence_fade(away_s),
+            cameras=tracked.cameras if away_s == 0.0 else (),
             uncertainty_m=grow_uncertainty(np.hypot(_SURE_M, _BONE_M * spread), away_s),
         )
-        return Track(body, shape, known.quality * confidence_fade(away_s))
+        return Track(body, shape, tracked.quality * confidence_fade(away_s))
 
     def _spread_of_ellipsoids(self, spread: Floats) -> Floats:
-        """(E,) the largest spread of each ellipsoid's own angles [rad]; 0 of one that has none."""
+        """(E,) largest spread of each ellipsoid's own angles [rad]; 0 if it has none."""
         first = self._body.whole.arrays.first_dof
         return np.array([spread[a:b].max(initial=0.0) for a, b in pairwise(first)])
 
 
-def _box(middle_m: Floats, aside_m: float, height_m: float) -> Floats:
-    """(2,3) from a little below the floor to this height, so far to each side of a place."""
-    aside = np.array([aside_m, 0.0, aside_m])
-    low, high = middle_m - aside, middle_m + aside
+def _box(middle_m: Floats, half_width_m: float, height_m: float) -> Floats:
+    """(2,3) corners of a box about a place, from a little below the floor to this height."""
+    half = np.array([half_width_m, 0.0, half_width_m])
+    low, high = middle_m - half, middle_m + half
     low[1], high[1] = -0.05, height_m
     return np.array([low, high])
 

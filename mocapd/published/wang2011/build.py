@@ -1,7 +1,7 @@
 """Builds a tracker of the published method from the calibration and the pose database."""
 
 from mocapd.calibration.calibration_record import Calibration, ShirtColours
-from mocapd.published.wang2011.params import Params, published
+from mocapd.published.wang2011.params import Params, paper_params
 from mocapd.published.wang2011.tracker import Wang2011Tracker
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.pose_database.database import PoseDatabase
@@ -19,6 +19,6 @@ def build_wang2011_tracker(
     shirt = calibration.shirt or ShirtColours()
     colours = colour_model(shirt.model)
     W = white_balances(shirt.white_balance, colours, plain=True)
-    params = params or published()
+    params = params or paper_params()
     rig = calibrated_rig(calibration)
     return Wang2011Tracker(rig, stature_m(calibration), colours, W, database, params, tracking)

@@ -38,13 +38,13 @@ class Params:
     iterations: int = 4  # of the inverse kinematics
     min_patch_samples: int = 12  # a smaller patch has no centroid
 
-    # the paper says nothing of when to believe a pose; ours
+    # acceptance of a pose, which the paper leaves open
     min_samples: int = 150  # coloured samples of a camera
     max_distance_px2: float = 30.0  # of the nearest id map
     min_agreement: float = 0.35  # share of rendered samples that are classified alike
 
 
-def published(baseline: bool = False) -> Params:
+def paper_params(baseline: bool = False) -> Params:
     """The paper's method or its baseline."""
     return Params(pose_prior=not baseline, adaptive_white_balance=not baseline)
 

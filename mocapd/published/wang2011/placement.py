@@ -36,8 +36,7 @@ _ITERATIONS = 6  # for each scale
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Guess:
-    """What the database says of one camera's id map: the ten nearest and where the root is, in the
-    camera's frame."""
+    """Database matches of one camera's id map: the ten nearest poses and the root in the camera's frame."""
 
     camera: Camera
     indices: Ints
@@ -54,7 +53,7 @@ class Constraints:
 
     camera: Camera
     points_m: Floats
-    seen: Floats
+    observed_xy: Floats
     weight: Floats
 
 
@@ -94,7 +93,7 @@ def constraints(model: BodyModel, local_xyzw: Floats, guess: Guess, sight: Sight
         [np.average(points[model.area == p], axis=0, weights=drawing.samples[model.area == p])
          for p in patches]
     ).reshape(-1, 3)  # fmt: skip
-    # the map that the database knows better has the better patches
+    # the map with nearer database poses has the better patches
     weight = np.sqrt(drawing.count[patches]) / (1.0 + float(guess.distances.mean()))
     return Constraints(guess.camera, means, normalised(guess.camera, pixels), weight)
 
@@ -120,7 +119,7 @@ def _as_database_draws(
     return drawing, crop_window(ids)
 
 
-def place(starts: Sequence[Guess], seen: Sequence[Constraints]) -> tuple[Floats, Floats]:
+def place(starts: Sequence[Guess], centroids: Sequence[Constraints]) -> tuple[Floats, Floats]:
     """World position (3,) and rotation (4,) of the root that fit the centroids of all cameras best.
 
     Levenberg-Marquardt over 6 degrees of freedom from each camera's own guess; the best end wins.
@@ -130,31 +129,33 @@ def place(starts: Sequence[Guess], seen: Sequence[Constraints]) -> tuple[Floats,
         R, t = start.camera.R, start.camera.t_m
         world_from_camera = rotations.from_matrix(R.T)
         q = rotations.multiply(world_from_camera, start.camera_from_root_xyzw)
-        end = _refine(seen, R.T @ (start.root_in_camera_m - t), rotations.canonical(q))
+        end = _refine(centroids, R.T @ (start.root_in_camera_m - t), rotations.canonical(q))
         if best is None or end[0] < best[0]:
             best = end
     assert best is not None
     return best[1], best[2]
 
 
-def _refine(seen: Sequence[Constraints], root: Floats, q: Floats) -> tuple[float, Floats, Floats]:
+def _refine(
+    centroids: Sequence[Constraints], root: Floats, q: Floats
+) -> tuple[float, Floats, Floats]:
     for scale_rad in _SCALES_RAD:
-        root, q = _descend(seen, root, q, scale_rad)
-    return _normal_equations(seen, root, q, _SCALES_RAD[1])[0], root, q
+        root, q = _descend(centroids, root, q, scale_rad)
+    return _normal_equations(centroids, root, q, _SCALES_RAD[1])[0], root, q
 
 
 def _descend(
-    seen: Sequence[Constraints], root: Floats, q: Floats, scale_rad: float
+    centroids: Sequence[Constraints], root: Floats, q: Floats, scale_rad: float
 ) -> tuple[Floats, Floats]:
     damping = 1e-3
-    cost, gradient, hessian = _normal_equations(seen, root, q, scale_rad)
+    cost, gradient, hessian = _normal_equations(centroids, root, q, scale_rad)
     for _ in range(_ITERATIONS):
         step = -np.linalg.solve(hessian + damping * np.diag(np.diag(hessian) + 1e-9), gradient)
         new_root = root + step[:3]
         new_q = rotations.canonical(
             rotations.multiply(rotations.exp(np.asarray(step[3:], dtype=np.float64)), q)
         )
-        new = _normal_equations(seen, new_root, new_q, scale_rad)
+        new = _normal_equations(centroids, new_root, new_q, scale_rad)
         if new[0] < cost:
             root, q, damping = new_root, new_q, damping * 0.3
             cost, gradient, hessian = new
@@ -164,15 +165,15 @@ def _descend(
 
 
 def _normal_equations(
-    seen: Sequence[Constraints], root: Floats, q: Floats, scale_rad: float
+    centroids: Sequence[Constraints], root: Floats, q: Floats, scale_rad: float
 ) -> tuple[float, Floats, Floats]:
     cost, gradient, hessian = 0.0, np.zeros(6), np.zeros((6, 6))
-    for c in seen:
+    for c in centroids:
         arm = rotations.rotate(q[None], c.points_m)
         p = (root + arm) @ c.camera.R.T + c.camera.t_m
         z = np.maximum(p[:, 2:], 0.1)
         xy = p[:, :2] / z
-        residual = xy - c.seen
+        residual = xy - c.observed_xy
         # d xy / d p, then d p / d (root, turn about the world's axes)
         d = np.zeros((len(p), 2, 3))
         d[:, 0, 0] = d[:, 1, 1] = 1.0 / z[:, 0]

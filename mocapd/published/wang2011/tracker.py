@@ -49,11 +49,11 @@ _PATCHES_OF = {
         ("Hand", slice(3, 6)),
     )
 }  # fmt: skip
-_WELL_SEEN = 40.0  # samples of a joint's patches, best camera
+_FULL_SAMPLES = 40.0  # samples of a joint's patches in the best camera, for full confidence
 
 
 class Wang2011Tracker:
-    """Steps 1 to 5 of section 5.2 on every frame set; see mocapd.tracking.base for the promises.
+    """Steps 1 to 5 of section 5.2 on every frame set; contract: mocapd.tracking.base.
 
     It does not estimate the wearer's proportions: it solves for the mean body and returns that pose on
     the given body.
@@ -88,7 +88,7 @@ class Wang2011Tracker:
         self.reset()
 
     def reset(self, near: BodyState | None = None) -> None:
-        """Forget everything learned since construction. near: the pose that the first one is held to."""
+        """Forget everything learned since construction. near: the prior of the first pose."""
         for segmenter in self._segmenters.values():
             segmenter.reset()
         self._last: Posture | None = None
@@ -113,12 +113,12 @@ class Wang2011Tracker:
                 if sight is not None:
                     sights[name] = sight
         self.probe("classify")
-        body, agreement, seen, refined = self._pose(frames, sights)
+        body, agreement, renderers, refined = self._pose(frames, sights)
         self.probe("pose")
         evidence = body is not None and agreement >= self.params.min_agreement
         tracking = self._tracking.step(frames.t_ns, evidence)
         if body is not None and evidence:
-            for name, drawing in seen.items():
+            for name, drawing in renderers.items():
                 self._segmenters[name].learn(
                     frames.frames[name].pixels,
                     sights[name].grid,
@@ -134,8 +134,8 @@ class Wang2011Tracker:
                 tracker=self.name,
                 pose=Pose(body.root_m, rotations.canonical(body.turned_xyzw)),
                 joints_m=body.joints_m,
-                confidence=_confidence(list(seen.values()), agreement),
-                cameras=tuple(seen),
+                confidence=_confidence(list(renderers.values()), agreement),
+                cameras=tuple(renderers),
             )
         if tracking is Tracking.LOST:
             if not evidence:
@@ -176,8 +176,8 @@ class Wang2011Tracker:
     def _pose(
         self, frames: FrameSet, sights: Mapping[str, Sight]
     ) -> tuple[Posture | None, float, dict[str, PatchRenderer], dict[str, Bytes]]:
-        """Steps 2 to 4: the pose, the share of rendered samples classified alike, and per camera what it
-        sees of the pose and the ids of step 3."""
+        """Steps 2 to 4: the pose, the share of rendered samples classified alike, and per camera the
+        rendered pose and the ids of step 3."""
         params, model = self.params, self._model
         guesses = {}
         for name, sight in sights.items():
@@ -199,18 +199,18 @@ class Wang2011Tracker:
             targets.append(target)
         elapsed_s = (frames.t_ns - self._last_t_ns) * 1e-9
         body = self._solver.solve(targets, blended, self._last, elapsed_s, params.min_patch_samples)
-        seen = {
+        renderers = {
             name: draw(model, body, self._segmenters[name].camera, sights[name].grid)
             for name in guesses
         }
-        alike = [_agreement(seen[name], self._colour, refined[name]) for name in guesses]
+        alike = [_agreement(renderers[name], self._colour, refined[name]) for name in guesses]
         rendered = sum(n for _, n in alike)
-        return body, sum(n for n, _ in alike) / max(rendered, 1), seen, refined
+        return body, sum(n for n, _ in alike) / max(rendered, 1), renderers, refined
 
     def _target(
         self, segmenter: Wang2011Segmenter, pixels: Bytes, sight: Sight, blended: Posture
     ) -> tuple[Target, Bytes]:
-        """Step 3, and the centroids of what it saw."""
+        """Step 3, and the centroids of its patches."""
         grid, params = sight.grid, self.params
         drawing = draw(self._model, blended, segmenter.camera, grid)
         rendered = np.empty((grid.height, grid.width), np.uint8)
@@ -246,13 +246,13 @@ def _agreement(drawing: PatchRenderer, colour: Bytes, ids: Bytes) -> tuple[int, 
     return int(((rendered == ids) & (rendered > 0)).sum()), int((rendered > 0).sum())
 
 
-def _confidence(seen: list[PatchRenderer], agreement: float) -> Floats:
-    """Per joint (J,): how much of its patches the best camera sees, times the overall agreement."""
-    count = np.max([drawing.count for drawing in seen], axis=0)
-    out = np.full(N_JOINTS, min(1.0, count[list(TORSO_QUARTERS)].sum() / (4.0 * _WELL_SEEN)))
+def _confidence(renderers: list[PatchRenderer], agreement: float) -> Floats:
+    """Per joint (J,): visible samples of its patches in the best camera, times the overall agreement."""
+    count = np.max([drawing.count for drawing in renderers], axis=0)
+    out = np.full(N_JOINTS, min(1.0, count[list(TORSO_QUARTERS)].sum() / (4.0 * _FULL_SAMPLES)))
     for name, patches in _PATCHES_OF.items():
-        out[INDEX[name]] = min(1.0, count[list(patches)].sum() / _WELL_SEEN)
+        out[INDEX[name]] = min(1.0, count[list(patches)].sum() / _FULL_SAMPLES)
     for j, name in enumerate(INDEX):
         if name.endswith(("UpperLeg", "LowerLeg", "Foot", "Toes")):
-            out[j] = 0.0  # the shirt says nothing of the legs
+            out[j] = 0.0  # the shirt does not show the legs
     return out * min(1.0, agreement / 0.7)

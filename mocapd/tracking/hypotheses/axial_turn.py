@@ -1,4 +1,4 @@
-"""By how much a bone must turn about its length for two joints beside it to lie as they were seen."""
+"""The turn of a bone about its length that brings two of its joints to their triangulated direction."""
 
 import numpy as np
 
@@ -6,9 +6,9 @@ from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.types import Floats
 
 
-def seen_between_m(joints: JointTerm, first: int, second: int, most_sd_m: float) -> Floats:
-    """From one joint to another (3,) [m, world], as the cameras' rays cross there; 0 where one of the places has a larger
-    standard deviation: cameras side by side hardly know how deep it is."""
+def triangulated_between_m(joints: JointTerm, first: int, second: int, most_sd_m: float) -> Floats:
+    """Triangulated vector (3,) from one joint to another [m, world]; 0 if a joint has a larger standard deviation, as depth
+    has from adjacent cameras."""
     places_m, sd_m = joints.crossings
     if max(sd_m[first], sd_m[second]) > most_sd_m:
         return np.zeros(3)
@@ -17,7 +17,7 @@ def seen_between_m(joints: JointTerm, first: int, second: int, most_sd_m: float)
 
 
 def turn_about_rad(axis: Floats, now: Floats, wanted: Floats, shortest: float) -> float:
-    """The angle about a unit axis (3,) from one vector (3,) to another; 0 where one is shorter than that across it."""
+    """Angle about a unit axis (3,) from one vector (3,) to another [rad]; 0 if one is shorter than `shortest` across it."""
     a, b = now - (now @ axis) * axis, wanted - (wanted @ axis) * axis
     if min(np.linalg.norm(a), np.linalg.norm(b)) < shortest:
         return 0.0

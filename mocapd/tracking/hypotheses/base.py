@@ -28,8 +28,8 @@ class PoseEvidence:
 class HypothesisContext:
     """The frame set in which hypotheses are tested, dt_s after the last one.
 
-    dressed: fitter and searches of the wearer's look; joints: the terms that saw joints, none in most frame sets; held:
-    information (n_pose,n_pose) of every fit where a trunk leads that is known: legs and head alone may change then.
+    joints: terms of the detected keypoints, none in most frame sets; trunk_prior: information (n_pose,n_pose) of every fit
+    if the shirt places the trunk, so that only legs and head may change.
     """
 
     solvers: RegionSolvers
@@ -61,7 +61,7 @@ class PoseHypothesis(Protocol):
         ...
 
     def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
-        """Do once for nothing what ordinary frames do not reach: those must not wait for its kernels."""
+        """Runs once what ordinary frames do not reach, so that none has to wait for its kernels."""
         ...
 
     def test(self, now: ScoredFit, at: HypothesisContext, /) -> ScoredFit:

@@ -12,16 +12,14 @@ from mocapd.tracking.ticks import Ticks
 
 @dataclass(frozen=True, slots=True)
 class FlipTestParams:
-    """When to look, and what a look tells."""
+    """Interval of the tests and weights of their evidence."""
 
-    every_s: float = 10 / 30  # from one look to the next, in a frame that sees no depths
-    latest_s: float = (
-        16 / 30
-    )  # the same while each frame has other things to try, which take as long
-    explained: float = 0.03  # so much more that is explained speaks as loud as ...
-    cost: float = 100.0  # ... a cost that is so much less
-    sure: float = 2.2  # of what spoke for the other way, and was not taken back, in these measures
-    most_loss: float = 0.05  # of what is explained, by a body that is turned round for its cost
+    every_s: float = 10 / 30  # between tests, in frame sets that measure no depth
+    latest_s: float = 16 / 30  # the same while other hypotheses take as long in every frame set
+    explained: float = 0.03  # gain of the explained share that counts as one unit of evidence
+    cost: float = 100.0  # decrease of the cost that counts as one unit
+    sure: float = 2.2  # accumulated evidence at which the body is flipped
+    most_loss: float = 0.05  # of the explained share, that a flip may cost
 
 
 class FlipTest:
@@ -34,7 +32,7 @@ class FlipTest:
     def reset(self) -> None:
         """Clears the evidence."""
         self._evidence = 0.0
-        self._last_test_tick = 0  # the tick
+        self._last_test_tick = 0
 
     def is_due(self, ticks: Ticks, is_long: bool) -> bool:
         """True if a test is due; is_long: this frame set already has long optional work."""

@@ -1,4 +1,4 @@
-"""The same body facing the other way: as seen in a mirror behind it, and with its limbs where they are."""
+"""The same body facing the other way: mirrored in depth, or turned under limbs that stay in place."""
 
 from dataclasses import replace
 
@@ -25,12 +25,12 @@ def flipped_poses(
     mirror = np.eye(3) - 2.0 * np.outer(along, along)
     across = rotations.to_matrix(fitter.joints(state)[1])[OTHER_SIDE]
     return (
-        _posed(state, mirror @ across @ _LEFT_TO_RIGHT),
-        _posed(state, across @ _ROUND),
+        _with_rotations(state, mirror @ across @ _LEFT_TO_RIGHT),
+        _with_rotations(state, across @ _ROUND),
     )
 
 
-def _posed(state: MotionState, R: Floats) -> MotionState:
+def _with_rotations(state: MotionState, R: Floats) -> MotionState:
     """The state with these global rotations (J,3,3), at rest."""
     q = rotations.from_matrix(R)
     local = rotations.multiply(rotations.inverse(q[PARENTS]), q)

@@ -1,7 +1,7 @@
-"""A foot that points where its toes were not seen: the leg is turned about its length until they point there.
+"""The foot heading hypothesis: turns a leg about its length until the foot points to its detected toes.
 
-A straight leg looks the same however it is turned about its length. Only the shoe tells, and toe and heel look alike: the fit
-finds the nearer of two headings. Where the rays of two cameras or more cross at ankle and toes, the network knows which.
+A straight leg looks the same however it is turned about its length. Only the shoe shows the turn, and toe and heel look
+alike: a fit finds the nearer of two headings. Ankle and toes triangulated from two cameras or more decide.
 """
 
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry import rotations
-from mocapd.tracking.hypotheses.axial_turn import seen_between_m, turn_about_rad
+from mocapd.tracking.hypotheses.axial_turn import triangulated_between_m, turn_about_rad
 from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
 from mocapd.tracking.hypotheses.keypoint_poses import best_start
 
@@ -25,9 +25,8 @@ from mocapd.tracking.hypotheses.keypoint_poses import best_start
 class FootHeadingParams:
     """When a leg is turned about its length."""
 
-    away_rad: float = 0.9  # from where the toes were seen to point
-    # of ankle and toes: cameras side by side hardly know how deep these are
-    most_sd_m: float = 0.12
+    away_rad: float = 0.9  # from the triangulated toes
+    most_sd_m: float = 0.12  # of ankle and toes: adjacent cameras hardly measure their depth
     shortest_m: float = 0.06  # from ankle to toes, across the leg
     iterations: int = 4
     gain: float = 5.0  # by how much the cost must fall [disagreeing pixels]
@@ -49,7 +48,7 @@ class FootHeading:
         """See PoseHypothesis: it has no kernels of its own."""
 
     def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
-        """See PoseHypothesis; as it is in frames that saw no joints."""
+        """See PoseHypothesis. Unchanged without detected keypoints."""
         p = self._params
         if at.ticks.last < self._next_tick:
             return now
@@ -66,16 +65,16 @@ class FootHeading:
 def legs_with_turned_feet(
     fitter: Fitter, state: MotionState, joints: JointTerm, params: FootHeadingParams
 ) -> Iterator[tuple[MotionState, tuple[str, ...]]]:
-    """For each foot that points elsewhere than its toes were seen: the body with that leg turned about its length, and the
+    """For each foot that points away from its triangulated toes: the body with that leg turned about its length, and the
     part that changes."""
     joints_m, globals_xyzw = fitter.joints(state)
     for side in SIDES:
         leg, toes = LIMBS[f"{side}_leg"], INDEX[side + "Toes"]
-        seen_m = seen_between_m(joints, leg.end, toes, params.most_sd_m)
+        detected_m = triangulated_between_m(joints, leg.end, toes, params.most_sd_m)
         along = joints_m[leg.end] - joints_m[leg.upper]
         along /= max(float(np.linalg.norm(along)), 1e-9)
         now_m = joints_m[toes] - joints_m[leg.end]
-        turn_rad = turn_about_rad(along, now_m, seen_m, params.shortest_m)
+        turn_rad = turn_about_rad(along, now_m, detected_m, params.shortest_m)
         if abs(turn_rad) <= params.away_rad:
             continue
         turn = rotations.multiply(rotations.exp(turn_rad * along), globals_xyzw[leg.upper])

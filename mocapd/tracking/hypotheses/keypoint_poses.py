@@ -1,7 +1,7 @@
-"""Where joints were seen elsewhere a fit begins there, in pictures that are classified beside that pose.
+"""The keypoint hypothesis: where keypoints disagree with the fit, further fits start at their pose.
 
-Of regions that look alike only what is drawn tells which pixel is whose, so in pictures that were classified beside the
-predicted pose any other one loses: an arm before a trunk of its colour could not come loose.
+Regions of the same colour are separated only by the rendered pose. So the pictures are classified again about each start
+pose: with the classification of the predicted pose, an arm before a trunk of its colour could not move away from it.
 """
 
 from collections.abc import Sequence
@@ -39,7 +39,7 @@ class KeypointPoses:
             fit_to_keypoints(at.solvers.fitter, now.fit.state, joints, (), self._params)
 
     def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
-        """See `best_keypoint_pose`; as it is in frames that saw no joints."""
+        """See `best_keypoint_pose`. Unchanged without detected keypoints."""
         for joints in at.joints:
             now = best_keypoint_pose(now, at, joints, self._params)
         return now
@@ -48,7 +48,7 @@ class KeypointPoses:
 def best_keypoint_pose(
     now: ScoredFit, at: HypothesisContext, joints: JointTerm, params: KeypointPoseParams
 ) -> ScoredFit:
-    """The cheapest of the present fit and those that begin where the joints were seen."""
+    """The cheapest of the present fit and those that start at the keypoints."""
     fitter = at.solvers.fitter
     held = [one for one in now.terms if not one.is_measured and one is not joints]
     starts = keypoint_starts(
@@ -66,7 +66,7 @@ def best_start(
     gained: float,
     farther: float,
 ) -> ScoredFit:
-    """The cheapest of the present fit and those that begin at `starts`, each with the parts that it changes.
+    """The cheapest of the present fit and those that start at `starts`, each with the parts that it changes.
 
     gained: by how much the cost must fall [disagreeing pixels]; farther: how much more it must fall for limbs that are
     farther away [disagreeing pixels/rad^2].
@@ -88,7 +88,7 @@ def best_start(
         )  # fmt: skip
         away_rad2 = float(turned_rad2(fit.state.local_xyzw[None, _LONG_BONES], here_xyzw)[0])
         gain = now.fit.cost_for_any_pose - fit.cost_for_any_pose - farther * away_rad2
-        if WHOLE in changed:  # the joints asked for it: the pictures must bear it without them
+        if WHOLE in changed:  # started by the keypoints: the pictures must confirm it without them
             gain -= cost_of(now.fit) - cost_of(fit)
         if gain > gained:
             best, gained = ScoredFit(fit, views, terms, changed, tried=True), gain

@@ -21,24 +21,24 @@ _LEGS = [j for name, one in LIMBS.items() if name.endswith("leg") for j in (one.
 
 @dataclass(frozen=True, slots=True)
 class KeypointPoseParams:
-    """When a limb, or all of the body, is tried where the network has it."""
+    """When a limb or the whole body is refitted at its keypoints."""
 
     limb_cost: float = 25.0  # of its joints, more than there [disagreeing pixels]
     whole_cost: float = 150.0
-    turned_rad: float = 0.6  # from where it faces, above which the body is turned first
-    iterations: int = 6  # towards the joints
-    fit_iterations: int = 4  # of a fit that begins there
-    loose_s: float = 0.3  # held as loosely as a prediction over this time
-    gain: float = 5.0  # by how much the cost must fall to change over [disagreeing pixels]
+    turned_rad: float = 0.6  # yaw error above which the body is turned first
+    iterations: int = 6  # of the fit to the keypoints alone
+    fit_iterations: int = 4  # of a fit to the pictures from there
+    loose_s: float = 0.3  # the prior is as weak as a prediction over this time
+    gain: float = 5.0  # cost decrease needed to accept it [disagreeing pixels]
     farther: float = (
-        5.0  # how much more must speak for limbs that are farther away [disagreeing pixels/rad^2]
+        5.0  # further decrease needed for limbs that are farther away [disagreeing pixels/rad^2]
     )
 
 
 def keypoint_starts(
     fitter: Fitter,
     fit: Fit,
-    seen: JointTerm,
+    keypoints: JointTerm,
     held: Sequence[Term],
     params: KeypointPoseParams,
     legs_alone: bool = False,
@@ -46,7 +46,7 @@ def keypoint_starts(
     """Start poses with the parts that change: with the limbs that are far from their keypoints, and with the whole body.
     held: further terms of the keypoint fit; legs_alone: the rest of the body is fixed."""
     p, joints_m = params, fitter.joints(fit.state)[0]
-    costs = seen.costs(joints_m)
+    costs = keypoints.costs(joints_m)
     far = {
         name: costs[[one.lower, one.end]].sum()
         for name, one in LIMBS.items()
@@ -55,15 +55,15 @@ def keypoint_starts(
     whole = not legs_alone and costs.sum() > p.whole_cost
     if max(far.values()) <= p.limb_cost and not whole:
         return []
-    # who leads knows left and right, and the network does where it sees the trunk as that does
-    knows_sides = legs_alone and abs(seen.turn_rad(joints_m)) < p.turned_rad
-    if not knows_sides and legs_exchanged(seen, joints_m, costs, p):
+    # a trunk from the shirt has the right sides; so have keypoints that agree with it about the facing direction
+    sides_agree = legs_alone and abs(keypoints.turn_rad(joints_m)) < p.turned_rad
+    if not sides_agree and legs_exchanged(keypoints, joints_m, costs, p):
         far = {name: cost for name, cost in far.items() if name.endswith("arm")}
     lost = [name for name, cost in far.items() if cost > p.limb_cost or whole]
     if not lost:
         return []
-    there = fit_to_keypoints(fitter, fit.state, seen, held, p, lost)
-    costs_there = seen.costs(fitter.joints(there)[0])
+    there = fit_to_keypoints(fitter, fit.state, keypoints, held, p, lost)
+    costs_there = keypoints.costs(fitter.joints(there)[0])
     limbs = tuple(
         name
         for name, cost in far.items()
@@ -82,38 +82,38 @@ def keypoint_starts(
 
 
 def legs_exchanged(
-    seen: JointTerm, joints_m: Floats, costs: Floats, params: KeypointPoseParams
+    keypoints: JointTerm, joints_m: Floats, costs: Floats, params: KeypointPoseParams
 ) -> bool:
     """True if the detected legs match these legs with left and right exchanged."""
     other_m = joints_m.copy()
     other_m[_LEGS] = joints_m[OTHER_SIDE[_LEGS]]
-    return bool(costs[_LEGS].sum() - seen.costs(other_m)[_LEGS].sum() > params.limb_cost)
+    return bool(costs[_LEGS].sum() - keypoints.costs(other_m)[_LEGS].sum() > params.limb_cost)
 
 
 def fit_to_keypoints(
     fitter: Fitter,
     state: MotionState,
-    seen: JointTerm,
+    keypoints: JointTerm,
     held: Sequence[Term],
     params: KeypointPoseParams,
     limbs: Collection[str] = (),
 ) -> MotionState:
     """A pose fitted to the keypoints alone from this state; `limbs` start from two-bone IK."""
-    turn_rad = seen.turn_rad(fitter.joints(state)[0])
+    turn_rad = keypoints.turn_rad(fitter.joints(state)[0])
     if abs(turn_rad) > params.turned_rad:
         local = state.local_xyzw.copy()
         local[0] = rotations.multiply(rotations.exp(np.array([0.0, turn_rad, 0.0])), local[0])
         state = replace(state, local_xyzw=rotations.canonical(local))
-    state = _bent(fitter, state, seen, limbs)
-    terms = (*held, seen.trusting)
+    state = _bent(fitter, state, keypoints, limbs)
+    terms = (*held, keypoints.trusting)
     return fitter.fit(state, (), params.loose_s, params.iterations, terms=terms).state
 
 
 def _bent(
-    fitter: Fitter, state: MotionState, seen: JointTerm, limbs: Collection[str]
+    fitter: Fitter, state: MotionState, keypoints: JointTerm, limbs: Collection[str]
 ) -> MotionState:
     joints_m, globals_xyzw = fitter.joints(state)
-    places_m = seen.places_m(joints_m[0])
+    places_m = keypoints.places_m(joints_m[0])
     local = state.local_xyzw.copy()
     for name in limbs:
         limb = LIMBS[name]

@@ -1,4 +1,4 @@
-"""Two legs look alike: when each has slipped onto the other, they are exchanged, or the hips were left behind in a turn."""
+"""The leg swap hypothesis: both legs look alike, so a fit may exchange them, or leave the hips behind in a turn."""
 
 from dataclasses import dataclass, replace
 
@@ -25,14 +25,14 @@ class LimbSwapParams:
     """When legs are exchanged."""
 
     every_s: float = 3 / 30  # from one look at crossed legs to the next
-    looks: int = 5  # in a row: who steps over sideways crosses them for a moment
+    looks: int = 5  # in a row: a step sideways crosses them for a moment
     twisted_rad: float = 0.7  # of the chest against the hips, above which these may be left behind
     iterations: int = 4
     gain: float = 10.0  # by how much the cost must fall to exchange them [disagreeing pixels]
 
 
 class LimbSwap:
-    """See PoseHypothesis. Remembers for how many looks the legs were crossed."""
+    """See PoseHypothesis. Counts the successive tests with crossed legs."""
 
     def __init__(self, params: LimbSwapParams) -> None:
         self._params = params
@@ -47,8 +47,8 @@ class LimbSwap:
         with_legs_exchanged(at.solvers.fitter, now.fit.state)
 
     def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
-        """Both legs look alike, and crossed ones are unusual. Where no trunk leads the hips may be turned as the chest is,
-        too: those of somebody who turned back may be left behind."""
+        """Tests crossed legs exchanged. Without a trunk from the shirt it also tests the hips turned below the chest: after a
+        turn of the body they may have been left behind."""
         p, fitter, fit = self._params, at.solvers.fitter, now.fit
         if not at.ticks.due(p.every_s):
             return now
@@ -63,7 +63,7 @@ class LimbSwap:
         starts = [with_legs_exchanged(fitter, fit.state)] if crossed else []
         if twisted:
             starts.append(with_hips_below_chest(fitter, fit.state))
-        # below hips that may be wrong no leg is usual; below those that the shirt knows that counts, too
+        # the pose prior of legs counts only below hips that the shirt confirms
         unusual = 0.0 if hips_too else 1.0
         best = cheapest_fit(
             fit, starts,
@@ -77,7 +77,7 @@ class LimbSwap:
 
 
 def are_crossed(joints_m: Floats) -> bool:
-    """Whether the ankles of joints (J,3) lie the other way round than the hip joints, seen from above."""
+    """True if the ankles of joints (J,3) are the other way round than the hip joints, in the view from above."""
     across = joints_m[INDEX["leftUpperLeg"]] - joints_m[INDEX["rightUpperLeg"]]
     across[1] = 0.0
     length = float(np.linalg.norm(across))

@@ -1,8 +1,7 @@
-"""A pelvis that is twisted against the trunk: its hips are turned to where the network saw them, trunk and legs stay.
+"""The pelvis heading hypothesis: turns a pelvis twisted against the trunk to its detected hip joints; trunk and legs stay.
 
 A pelvis looks much the same from all sides. When both legs move fast, as in a squat, a fit can turn it beyond what a spine
-can follow, and finds no way back. Where the rays of two cameras or more cross at both hip joints, the network knows its
-heading.
+can follow, a local minimum. Hip joints triangulated from two cameras or more give its heading.
 """
 
 from dataclasses import dataclass, replace
@@ -15,7 +14,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry import rotations
-from mocapd.tracking.hypotheses.axial_turn import seen_between_m, turn_about_rad
+from mocapd.tracking.hypotheses.axial_turn import triangulated_between_m, turn_about_rad
 from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
 from mocapd.tracking.hypotheses.keypoint_poses import best_start
 from mocapd.types import Floats
@@ -30,8 +29,8 @@ _LEGS = [LIMBS["left_leg"], LIMBS["right_leg"]]
 class PelvisHeadingParams:
     """When a pelvis is turned."""
 
-    away_rad: float = 0.8  # from the heading that the hip joints were seen to have
-    most_sd_m: float = 0.12  # of each hip joint
+    away_rad: float = 0.8  # from the heading of the triangulated hip joints
+    most_sd_m: float = 0.12  # standard deviation of each triangulated hip joint
     shortest_m: float = 0.06  # between them, across the trunk
     iterations: int = 4
     gain: float = 5.0  # by how much the cost must fall [disagreeing pixels]
@@ -50,7 +49,7 @@ class PelvisHeading:
         """See PoseHypothesis: it has no kernels of its own."""
 
     def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
-        """See PoseHypothesis; as it is where the trunk is known, and in frames that saw no joints."""
+        """See PoseHypothesis. Unchanged if the shirt places the trunk, and without detected keypoints."""
         p = self._params
         if at.trunk_prior is not None:
             return now
@@ -65,13 +64,15 @@ class PelvisHeading:
 def turned_pelvis(
     fitter: Fitter, state: MotionState, joints: JointTerm, params: PelvisHeadingParams
 ) -> MotionState | None:
-    """The body with its pelvis turned about the trunk to where its hip joints were seen, and trunk, knees and feet in place;
-    None where they do not tell, or it faces there."""
+    """The body with its pelvis turned about the trunk to its triangulated hip joints, and trunk, knees and feet in place;
+    None if these are too uncertain or the pelvis agrees with them."""
     joints_m, globals_xyzw = fitter.joints(state)
     trunk = joints_m[_NECK] - joints_m[_HIPS]
     trunk /= max(float(np.linalg.norm(trunk)), 1e-9)
-    seen_m = seen_between_m(joints, _RIGHT, _LEFT, params.most_sd_m)
-    turn_rad = turn_about_rad(trunk, joints_m[_LEFT] - joints_m[_RIGHT], seen_m, params.shortest_m)
+    detected_m = triangulated_between_m(joints, _RIGHT, _LEFT, params.most_sd_m)
+    turn_rad = turn_about_rad(
+        trunk, joints_m[_LEFT] - joints_m[_RIGHT], detected_m, params.shortest_m
+    )
     if abs(turn_rad) <= params.away_rad:
         return None
     local = state.local_xyzw.copy()

@@ -1,4 +1,4 @@
-"""Starts from a person in any clothes in the foreground: standing, sitting or crouching; see `person_search`."""
+"""Starts from a person in any clothes in the foreground, upright, sitting or crouching; see `person_search`."""
 
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.initialisers.base import InitialPose

@@ -1,4 +1,4 @@
-"""The first pose of a person who does not stand facing the cameras, from detected keypoints.
+"""The first pose of a person person does not stand facing the cameras, from detected keypoints.
 
 The network runs on each foreground blob that all cameras show in one place. A pose from its triangulated keypoints is
 fitted to keypoints and silhouettes. It counts as a person only if the silhouette agrees, most keypoints agree in every
@@ -38,16 +38,15 @@ _HIGHEST_MIDDLE_M = 1.6  # of a body that touches the floor
 
 @dataclass(frozen=True, slots=True, eq=False)
 class KeypointCandidate:
-    """Somebody who may be here: fitted to joints and silhouettes; who: the pieces of the foreground; shadows: with those that
-    may be one.
+    """A candidate fitted to keypoints and silhouettes. shadows: the blobs include possible shadows.
 
-    spread_m: median over the joints of how far each is spread over its map, in the camera where that is largest, inf where
-    one sees too few; off_sds2: likewise, how far off the body has them [standard deviations^2]; apart_m: mean distance
-    between the body's joints and the triangulated ones; lowest_m: height of the lowest joint.
+    spread_m: median heatmap spread of the keypoints in the worst camera, inf if a camera shows too few; off_sds2: median
+    squared distance of the body's joints from the keypoints in the worst camera [standard deviations^2]; apart_m: mean
+    distance of the body's joints from the triangulated ones; lowest_m: height of the lowest joint.
     """
 
     fit: Fit
-    who: PersonCandidate
+    person: PersonCandidate
     shadows: bool
     spread_m: float
     off_sds2: float
@@ -68,7 +67,7 @@ class KeypointInitialiser:
         start: StartParams,
         params: KeypointStartParams,
     ) -> None:
-        """silhouettes: a fitter whose body is of one colour; cameras: those of the views."""
+        """silhouettes: a fitter whose body has one region; cameras: those of the views."""
         self._silhouettes, self._floor, self._joints = silhouettes, floor, joints
         self._views, self._cameras = views, cameras
         self._params = params
@@ -85,8 +84,8 @@ class KeypointInitialiser:
         """A person of this shape found in two successive searches; yields after each attempt."""
         found: list[KeypointCandidate] = []
         for shadows in (False, True):
-            for middle_m, who in self._candidates(shadows):
-                one = self.attempt(middle_m, who, shadows, factors, information)
+            for middle_m, person in self._candidates(shadows):
+                one = self.attempt(middle_m, person, shadows, factors, information)
                 if one is not None and self.is_person(one):
                     found.append(one)
                 yield
@@ -104,15 +103,15 @@ class KeypointInitialiser:
     def now(self, then: KeypointCandidate, walked_m: float) -> KeypointCandidate | None:
         """A person of older pictures refitted to the newest ones; None if none is within walked_m [m]."""
         near = [
-            (away_m, middle_m, who)
-            for middle_m, who in self._candidates(then.shadows)
-            if (away_m := float(np.linalg.norm(who.place_m - then.who.place_m))) <= walked_m
+            (away_m, middle_m, person)
+            for middle_m, person in self._candidates(then.shadows)
+            if (away_m := float(np.linalg.norm(person.place_m - then.person.place_m))) <= walked_m
         ]
         if not near:
             return None
-        _, middle_m, who = min(near, key=lambda one: one[0])
+        _, middle_m, person = min(near, key=lambda one: one[0])
         state = then.fit.state
-        found = self.attempt(middle_m, who, then.shadows, state.factors, state.information)
+        found = self.attempt(middle_m, person, then.shadows, state.factors, state.information)
         return found if found is not None and self.is_person(found) else None
 
     def _worth(self, one: KeypointCandidate) -> float:
@@ -121,7 +120,7 @@ class KeypointInitialiser:
     def attempt(
         self,
         middle_m: Floats,
-        who: PersonCandidate,
+        person: PersonCandidate,
         shadows: bool,
         factors: Floats,
         information: Floats,
@@ -132,8 +131,8 @@ class KeypointInitialiser:
         hips_m = state.root_m
         for _ in range(p.looks):
             detect = self._joints.detector(fitter, state, self._views)
-            terms = self._joints.term(fitter.model, map(detect, who.blobs))
-            if not terms or len(terms[0].rays) < len(who.blobs):
+            terms = self._joints.term(fitter.model, map(detect, person.blobs))
+            if not terms or len(terms[0].rays) < len(person.blobs):
                 return None
             joints = terms[0]
             if max(joints.median_spreads_m(p.least_joints)) > p.hopeless_m:
@@ -146,15 +145,15 @@ class KeypointInitialiser:
             state = fitter.fit(posed, (), self._start.loose_s, p.iterations, terms=held).state
             hips_m = state.root_m
         fit = fit_to_blobs(
-            fitter, views_of(who, self._views.present), state, self._start.iterations, (self._floor, joints),
+            fitter, views_of(person, self._views.present), state, self._start.iterations, (self._floor, joints),
             self._start,
         )  # fmt: skip
         joints_m = fitter.joints(fit.state)[0]
-        seen = np.isfinite(places_m[:, 0])
-        apart_m = float(np.linalg.norm(places_m - joints_m, axis=1)[seen].mean())
+        has_place = np.isfinite(places_m[:, 0])
+        apart_m = float(np.linalg.norm(places_m - joints_m, axis=1)[has_place].mean())
         return KeypointCandidate(
             fit,
-            who,
+            person,
             shadows,
             max(joints.median_spreads_m(p.least_joints)),
             max(float(np.median(one)) for one in joints.off_sds2(joints_m)),
@@ -193,7 +192,7 @@ class KeypointInitialiser:
     def _best_middle(
         self, first: int, blob: Blob, blobs: Mapping[int, Sequence[Blob]], scales: Sequence[int]
     ) -> tuple[Floats, PersonCandidate] | None:
-        """The distance at which the pieces of all cameras agree most about one body on the floor."""
+        """The distance along the first camera's ray at which the blobs of all cameras best match one body on the floor."""
         p, start = self._params, self._start
         eye, ray = rays(self._cameras[first], _frame_px(_middle_px(blob), scales[first])[None])
         best: tuple[Floats, PersonCandidate] | None = None
@@ -220,7 +219,7 @@ class KeypointInitialiser:
 def _upright_about(
     fitter: Fitter, middle_m: Floats, factors: Floats, information: Floats
 ) -> MotionState:
-    """Somebody upright whose middle, about which the network looks, is at middle_m (3,)."""
+    """An upright body whose crop centre (see `middle_of`) is at middle_m (3,)."""
     rest_m = fitter.shaper(factors).rest
     root_m = middle_m - (middle_of(rest_m[_HIPS], rest_m[_NECK]) - rest_m[_HIPS])
     local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
@@ -228,7 +227,7 @@ def _upright_about(
 
 
 def _middle_px(blob: Blob) -> Floats:
-    """Of a piece [work px]."""
+    """Centre of a blob [work px]."""
     return np.array([blob.middle_x, 0.5 * (blob.top + blob.bottom)])
 
 
@@ -240,7 +239,7 @@ def _frame_px(work_px: Floats, image_scale: int) -> Floats:
 def _off_px2(
     blob: Blob, at_px: Floats, foot_y: float, height_px: float, params: KeypointStartParams
 ) -> float:
-    """Of a body whose middle is at at_px (2,), above a floor at the row foot_y, as this piece [work px^2]."""
+    """Mismatch [work px^2] of a blob with a body centred at at_px (2,) above the floor row foot_y."""
     off = _middle_px(blob) - at_px
     below = blob.bottom - min(foot_y, height_px)
     return float(off @ off + params.bottom_weight * below**2)

@@ -1,9 +1,8 @@
-"""A whole pose from joints that a network saw in several pictures: joints in space first, then the bones between them.
+"""A whole pose from keypoints of several pictures, without an assumption about the stance and without iteration.
 
-Nothing is assumed of the stance: somebody may sit, kneel, lie, or turn the back. Two steps, neither of which iterates:
-weighted linear triangulation of all joints together, where each camera also says how much farther away than the hips each
-joint is, so that cameras 12 cm apart and even one suffice; then the trunk by its four corners, and each limb by the two
-bones that lead to its joints (`fit/limbs/two_bone_ik.py`). A fit refines what comes of it.
+First weighted linear triangulation of all joints together. Each camera also estimates each joint's depth relative to the
+hips, so that cameras 12 cm apart, or one alone, suffice. Then the trunk from its four corners, and each limb by two-bone
+IK (`fit/limbs/two_bone_ik.py`). A fit refines the result.
 """
 
 from collections.abc import Sequence
@@ -23,20 +22,22 @@ _SHOULDERS = [INDEX["leftUpperArm"], INDEX["rightUpperArm"]]
 _HIP_JOINTS = [INDEX["leftUpperLeg"], INDEX["rightUpperLeg"]]
 
 
-def triangulated_joints(seen: Sequence[JointRays], middle_m: Floats, middle_sd_m: float) -> Floats:
-    """Joints (J,3) [m, world] that agree most with what the cameras saw; NaN for those that none saw.
+def triangulated_joints(
+    detected: Sequence[JointRays], middle_m: Floats, middle_sd_m: float
+) -> Floats:
+    """Triangulated joints (J,3) [m, world]; NaN for joints that no camera detects.
 
-    middle_m (3,): about where the hips are, known to middle_sd_m, which decides only what the rays leave open: the distance
-    from cameras that are beside each other.
+    middle_m (3,): prior of the hips with standard deviation middle_sd_m. It decides only what the rays leave open, such as
+    the distance from adjacent cameras.
     """
-    joints = sorted({_HIPS, *(int(j) for one in seen for j in one.joints)})
+    joints = sorted({_HIPS, *(int(j) for one in detected for j in one.joints)})
     place = {j: k for k, j in enumerate(joints)}
     n = 3 * len(joints)
     H, b = np.zeros((n, n)), np.zeros(n)
     hips = slice(3 * place[_HIPS], 3 * place[_HIPS] + 3)
     H[hips, hips] += np.eye(3) / middle_sd_m**2
     b[hips] += middle_m / middle_sd_m**2
-    for one in seen:
+    for one in detected:
         R, t_m = one.camera.R, one.camera.t_m
         for (x, y), (xx, xy, yy), joint, farther_m, depth in zip(
             one.xy, one.information, one.joints, one.farther_m, one.depth_information, strict=True
@@ -64,8 +65,8 @@ def triangulated_joints(seen: Sequence[JointRays], middle_m: Floats, middle_sd_m
 def pose_through(
     fitter: Fitter, places_m: Floats, factors: Floats, information: Floats
 ) -> MotionState | None:
-    """A body of these proportions with its joints about at places_m (J,3), NaN where unknown; None where its trunk is not
-    known. Neck and head are as in the T-pose."""
+    """A body of this shape with its joints about at places_m (J,3), NaN where unknown; None without all four trunk
+    corners. Neck and head are as in the T-pose."""
     corners_m = places_m[[*_SHOULDERS, *_HIP_JOINTS]]
     if not np.isfinite(corners_m).all():
         return None
@@ -89,7 +90,7 @@ def pose_through(
 
 
 def _frame(across: Floats, up: Floats) -> Floats | None:
-    """Columns (3,3) of a trunk: to its left, up its spine, forwards; None where these are hardly apart."""
+    """Rotation (3,3) of a trunk, with columns left, up the spine, forwards; None if `across` and `up` are nearly parallel."""
     z = np.cross(across, up)
     lengths = np.linalg.norm(across), np.linalg.norm(up), np.linalg.norm(z)
     if min(lengths) < 1e-3 or lengths[2] < 0.3 * lengths[0] * lengths[1]:

@@ -37,7 +37,7 @@ class MotionMonitor:
             self._moved_ns = t_ns
 
     def reason(self, t_ns: int) -> LostReason | None:
-        """Why nobody is tracked at this time; None: nothing moves, or not for long."""
+        """Why no person is tracked; None if nothing moves, or not for long."""
         p, since_ns = self._params, self._since_ns
         if since_ns is None or t_ns - self._moved_ns > nanoseconds(p.rest_s):
             return None

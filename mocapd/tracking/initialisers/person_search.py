@@ -25,7 +25,7 @@ from mocapd.tracking.initialisers.standing_initialiser import (
     blobs_of,
     fit_first_pose,
     fit_to_blobs,
-    is_standing,
+    is_upright,
     person_candidates,
     views_of,
 )
@@ -33,21 +33,21 @@ from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Camera, Floats
 from mocapd.vision.foreground_kernels import BACKGROUND
 
-Found = tuple[Fit, tuple[str, ...]]  # somebody, and the cameras that show them
+Found = tuple[Fit, tuple[str, ...]]  # a body and the names of the cameras that show it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Seen:
-    """A person in the foreground, or a candidate, with its views. shadows: the blobs include possible shadows; low: the
-    keypoint candidate, for a person who does not stand upright."""
+class _SearchCandidate:
+    """A candidate person in the foreground, with its views. shadows: the blobs include possible shadows; by_keypoints:
+    set if the keypoint initialiser found it."""
 
-    who: PersonCandidate
+    person: PersonCandidate
     shadows: bool
     views: tuple[View, ...]
-    low: KeypointCandidate | None = None
+    by_keypoints: KeypointCandidate | None = None
 
 
-_Likely = tuple[Fit, _Seen]
+_Likely = tuple[Fit, _SearchCandidate]
 
 
 class AttemptSchedule:
@@ -60,7 +60,7 @@ class AttemptSchedule:
         self._attempt_ns: int | None = None  # until the frame set after it has come
 
     def on_frame_set(self, t_ns: int) -> None:
-        """A frame set: the first after a piece tells how long that took."""
+        """Measures how long the last piece took, from the first frame set after it."""
         if self._attempt_ns is None:
             return
         took_ns, self._attempt_ns = t_ns - self._attempt_ns, None
@@ -72,7 +72,7 @@ class AttemptSchedule:
         return t_ns >= self._next_ns
 
     def on_attempt(self, t_ns: int, to_the_end: bool) -> None:
-        """A piece was done at this frame set; after the last piece of a look there is a pause."""
+        """Records a piece done at this frame set; a pause follows the last piece of a search."""
         self._attempt_ns = t_ns
         if to_the_end:
             self._next_ns = t_ns + self._pause_ns
@@ -90,24 +90,25 @@ class PersonSearch:
         views: CameraViews,
         cameras: Sequence[Camera],
         params: StartParams,
-        low: KeypointStartParams,
+        keypoint_params: KeypointStartParams,
         motion: MotionMonitorParams,
         now_ns: Callable[[], int],
     ) -> None:
-        """silhouettes: a fitter whose body is of one colour; cameras: those of the views; low: of who does not stand;
-        motion: of who is not found; now_ns: see `Resources`."""
+        """silhouettes: a fitter whose body has one region; cameras: those of the views; now_ns: see `Resources`."""
         self._silhouettes, self._floor, self._views = silhouettes, floor, views
         self._cameras, self._params, self._clock_ns = cameras, params, now_ns
-        self._joints, self._least_joints = joints, low.least_joints
+        self._joints, self._least_joints = joints, keypoint_params.least_joints
         self._motion = MotionMonitor(motion)
-        self._low = KeypointInitialiser(silhouettes, floor, joints, views, cameras, params, low)
+        self._by_keypoints = KeypointInitialiser(
+            silhouettes, floor, joints, views, cameras, params, keypoint_params
+        )
         self.reset()
 
     def reset(self) -> None:
         """Forgets all candidates and searches at once."""
         self.times = AttemptSchedule(self._params)
         self._likely_m: list[Floats] = []
-        self._low.reset()
+        self._by_keypoints.reset()
         self._motion.reset()
         self.give_up()
 
@@ -125,11 +126,11 @@ class PersonSearch:
             return None
         begins = self._under_way is None
         if self._under_way is None:
-            self._see()
+            self._update_foreground()
             self._motion.update(
                 t_ns, {i: self._views.each[i].foreground for i in self._views.present}
             )
-            self._under_way = self._look(factors, information)
+            self._under_way = self._search(factors, information)
         until_ns = self._clock_ns() + nanoseconds(self._params.longest_s)
         try:
             next(self._under_way)
@@ -152,71 +153,76 @@ class PersonSearch:
         """Why no person is found, if known."""
         return self._motion.reason(t_ns)
 
-    def _look(self, factors: Floats, information: Floats) -> Generator[None, None, _Likely | None]:
-        """A whole look at the newest pictures, which `_see` saw; it may be left after each fit, and gone on with later."""
+    def _search(
+        self, factors: Floats, information: Floats
+    ) -> Generator[None, None, _Likely | None]:
+        """A whole search of the newest foreground. Yields after each fit, so that a later frame set may continue it."""
         p = self._params
         fits = []
-        for seen in [one for shadows in (False, True) for one in self._standing(shadows)]:
+        for candidate in self._standing_candidates(False) + self._standing_candidates(True):
             fit = yield from fit_first_pose(
                 self._silhouettes,
-                seen.who,
-                seen.views,
+                candidate.person,
+                candidate.views,
                 factors,
                 information,
                 (self._floor,),
                 p,
             )
-            fits.append((fit, seen))
+            fits.append((fit, candidate))
         likely = [one for one in fits if self._is_likely(one[0]) and self._is_person(*one)]
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
-            low = yield from self._low.look(factors, information)
-            return None if low is None else _found_low(low, self._views.present)
-        self._low.reset()
-        # who is nearer wants to be tracked: a passer-by is seldom in front
-        fit, seen = max(
+            found = yield from self._by_keypoints.look(factors, information)
+            return None if found is None else _from_keypoints(found, self._views.present)
+        self._by_keypoints.reset()
+        # prefer the nearer person: a passer-by is seldom in front
+        fit, candidate = max(
             likely, key=lambda one: one[0].explained - p.farther_per_m * self._away_m(one[0])
         )
         again = any(np.linalg.norm(fit.state.root_m - one) < p.same_place_m for one in last)
         if fit.explained < p.accept_explained and not again:
             return None
-        return fit, seen
+        return fit, candidate
 
-    def _as_now(self, fit: Fit, then: _Seen) -> _Likely | None:
+    def _as_now(self, fit: Fit, then: _SearchCandidate) -> _Likely | None:
         """The person of older pictures refitted to the newest ones; None if no candidate is near."""
         p = self._params
-        self._see()
-        if then.low is not None:
-            low = self._low.now(then.low, p.walked_m)
-            return None if low is None else _found_low(low, self._views.present)
+        self._update_foreground()
+        if then.by_keypoints is not None:
+            found = self._by_keypoints.now(then.by_keypoints, p.walked_m)
+            return None if found is None else _from_keypoints(found, self._views.present)
         away_m, now = min(
             (
-                (float(np.linalg.norm(one.who.place_m - then.who.place_m)), one)
-                for one in self._standing(then.shadows)
+                (float(np.linalg.norm(one.person.place_m - then.person.place_m)), one)
+                for one in self._standing_candidates(then.shadows)
             ),
             key=lambda one: one[0],
             default=(np.inf, then),
         )
         if away_m > p.walked_m:
             return None
-        went = replace(fit.state, root_m=fit.state.root_m + now.who.place_m - then.who.place_m)
-        fit = fit_to_blobs(self._silhouettes, now.views, went, p.iterations, (self._floor,), p)
+        step_m = now.person.place_m - then.person.place_m
+        start = replace(fit.state, root_m=fit.state.root_m + step_m)
+        fit = fit_to_blobs(self._silhouettes, now.views, start, p.iterations, (self._floor,), p)
         return (fit, now) if self._is_likely(fit) else None
 
-    def _see(self) -> None:
-        """Everything that stands before the background."""
+    def _update_foreground(self) -> None:
+        """Segments the foreground of whole pictures, without a body."""
         self._views.mark_body(None)
         self._views.update_foreground()
         self._views.remove_ghosts()
 
-    def _standing(self, shadows: bool) -> list[_Seen]:
-        """The likeliest standing people in the foreground. shadows: include possible shadows."""
+    def _standing_candidates(self, shadows: bool) -> list[_SearchCandidate]:
+        """The likeliest upright people in the foreground. shadows: include possible shadows."""
         p, views = self._params, self._views
         blobs = {i: blobs_of(views.each[i].foreground, shadows, p) for i in self._clear_cameras()}
-        smaller = [one.image_scale for one in views.each]
+        scales = [view.image_scale for view in views.each]
         stature_m = self._silhouettes.model.stature_m
-        people = person_candidates(blobs, self._cameras, smaller, stature_m, p)[: p.people]
-        return [_Seen(who, shadows, views_of(who, views.present)) for who in people]
+        people = person_candidates(blobs, self._cameras, scales, stature_m, p)[: p.people]
+        return [
+            _SearchCandidate(person, shadows, views_of(person, views.present)) for person in people
+        ]
 
     def _clear_cameras(self) -> list[int]:
         """Cameras without those whose picture hardly shows its background (changed light, or a person close to the lens):
@@ -228,21 +234,18 @@ class PersonSearch:
         return clear if len(clear) > 1 else list(views.present)
 
     def _is_likely(self, fit: Fit) -> bool:
-        return fit.explained >= self._params.likely_explained and is_standing(
-            self._silhouettes, fit
-        )
+        return fit.explained >= self._params.likely_explained and is_upright(self._silhouettes, fit)
 
-    def _is_person(self, fit: Fit, seen: _Seen) -> bool:
-        """Whether the network knows the joints of a body where furniture may stand: in one picture of those that show enough
-        of them."""
+    def _is_person(self, fit: Fit, candidate: _SearchCandidate) -> bool:
+        """False if the heatmaps of all pictures that show enough keypoints are as blurred as for furniture."""
         detect = self._joints.detector(self._silhouettes, fit.state, self._views)
-        terms = self._joints.term(self._silhouettes.model, map(detect, seen.who.blobs))
+        terms = self._joints.term(self._silhouettes.model, map(detect, candidate.person.blobs))
         spreads_m = [one for term in terms for one in term.median_spreads_m(self._least_joints)]
-        known_m = [one for one in spreads_m if one < np.inf]
-        return not known_m or min(known_m) <= self._params.spread_m
+        finite_m = [spread_m for spread_m in spreads_m if spread_m < np.inf]
+        return not finite_m or min(finite_m) <= self._params.spread_m
 
-    def _names(self, seen: _Seen) -> tuple[str, ...]:
-        return tuple(self._views.each[i].name for i in seen.who.blobs)
+    def _names(self, candidate: _SearchCandidate) -> tuple[str, ...]:
+        return tuple(self._views.each[i].name for i in candidate.person.blobs)
 
     def _away_m(self, fit: Fit) -> float:
         """From the cameras, on average."""
@@ -250,6 +253,7 @@ class PersonSearch:
         return float(np.linalg.norm(np.array(eyes) - fit.state.root_m, axis=1).mean())
 
 
-def _found_low(one: KeypointCandidate, present: Mapping[int, float]) -> _Likely:
-    """Somebody whom the joints found; present: see `CameraViews`."""
-    return one.fit, _Seen(one.who, one.shadows, views_of(one.who, present), one)
+def _from_keypoints(found: KeypointCandidate, present: Mapping[int, float]) -> _Likely:
+    """present: see `CameraViews`."""
+    views = views_of(found.person, present)
+    return found.fit, _SearchCandidate(found.person, found.shadows, views, found)

@@ -1,4 +1,4 @@
-"""The first pose of a standing person, from silhouettes in the foreground."""
+"""The first pose of an upright person, from silhouettes in the foreground."""
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from mocapd.types import Bytes, Camera, Floats
 from mocapd.vision.foreground_kernels import BEFORE, UNKNOWN, stands
 
 _ONE_SIDE = 0.6  # length of the mean direction to the cameras, above which they stand on one side
-_BESIDE = 0.99  # the same of cameras beside each other: less than 16 degrees between two
+_ADJACENT = 0.99  # the same of adjacent cameras: less than 16 degrees between two
 _PAST_RAD = 1.2  # to either side: one fit does not turn by a quarter
 _UPRIGHT = 0.85  # of the hips' height: two shadows, or pieces of one body, are explained by one that squats
 _ON_FLOOR_M = 0.25  # of both ankles on average: one foot may be raised, or both be on a step
@@ -33,11 +33,11 @@ _ABOUT_PX = 20  # of a blob, within which its body is drawn
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blob:
-    """A connected piece before the background of one camera: mask (h,w) uint8 of the region roi about it and where the
-    background is known there, its box's upper and lower edge and its middle column [work px]."""
+    """A connected component of a camera's foreground: mask (h,w) uint8 in the region roi, has_background: pixels with a
+    background model, upper and lower edge of its box and its mean column [work px]."""
 
     mask: Bytes
-    known: NDArray[np.bool_]
+    has_background: NDArray[np.bool_]
     roi: Roi
     top: float
     bottom: float
@@ -54,10 +54,12 @@ class PersonCandidate:
 
 
 def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
-    """The largest pieces (h,w) that may be people, largest first, joined across what is not known; shadows: with what may be
-    one, or dark cloth."""
-    mask, known = stands(before) if shadows else before == BEFORE, before != UNKNOWN
-    n, numbered, stats, middles = cv2.connectedComponentsWithStats((mask | ~known).astype(np.uint8))
+    """The largest components that may be people, largest first, joined across pixels without a background model. shadows:
+    include possible shadows, which may be dark cloth."""
+    mask, has_background = stands(before) if shadows else before == BEFORE, before != UNKNOWN
+    n, numbered, stats, middles = cv2.connectedComponentsWithStats(
+        (mask | ~has_background).astype(np.uint8)
+    )
     order = sorted(range(1, n), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))[: params.blobs]
     out = []
     for k in order:
@@ -72,7 +74,7 @@ def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
             if np.count_nonzero(piece) < params.least_px:
                 continue
             edges = top, top + height, float(middles[k, 0])
-            out.append(Blob(piece, known[here], (x0, y0, x1, y1), *edges))
+            out.append(Blob(piece, has_background[here], (x0, y0, x1, y1), *edges))
     return out
 
 
@@ -129,14 +131,14 @@ def _best_place(
 
 
 def _misfit(blob: Blob, top: Floats, foot: Floats, height_px: float) -> float:
-    """Of a person between top (2,) and foot (2,) [work px] as this blob; feet below the picture are not missed. The head is
-    sharper than the shoes with their shadow."""
+    """Mismatch [work px^2] of a blob with a person between top (2,) and foot (2,) [work px]. Feet below the picture cost
+    nothing; the lower edge has less weight, since shoes have shadows."""
     across = blob.middle_x - 0.5 * (top[0] + foot[0])
     below = blob.bottom - min(float(foot[1]), height_px)
     return float((blob.top - top[1]) ** 2 + across**2 + 0.5 * below**2)
 
 
-def is_standing(fitter: Fitter, fit: Fit) -> bool:
+def is_upright(fitter: Fitter, fit: Fit) -> bool:
     """True if the hips are about as high as in the T-pose and the feet on the floor; excludes people on a television."""
     joints_m = fitter.joints(fit.state)[0]
     return bool(
@@ -145,18 +147,24 @@ def is_standing(fitter: Fitter, fit: Fit) -> bool:
     )
 
 
-def views_of(who: PersonCandidate, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
-    """Somebody's blobs as what a fit of silhouettes looks at; offsets_s: each camera's own time after the frame set's, by
+def views_of(person: PersonCandidate, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
+    """The candidate's blobs as views of a silhouette fit. offsets_s: each camera's time offset from the frame set, by
     index."""
     return tuple(
-        View(i, blob.roi, blob.mask, np.where(blob.known, 255, 0).astype(np.uint8), offsets_s[i])
-        for i, blob in who.blobs.items()
+        View(
+            i,
+            blob.roi,
+            blob.mask,
+            np.where(blob.has_background, 255, 0).astype(np.uint8),
+            offsets_s[i],
+        )
+        for i, blob in person.blobs.items()
     )
 
 
 def fit_first_pose(
     fitter: Fitter,
-    who: PersonCandidate,
+    person: PersonCandidate,
     views: Sequence[View],
     factors: Floats,
     information: Floats,
@@ -166,22 +174,24 @@ def fit_first_pose(
     """The best of several start poses, fitted to the blobs by a silhouette fitter; yields after each fit."""
     rest = fitter.shaper(factors).rest
 
-    def fitted(yaw: float, arm: float) -> Fit:
+    def rough_fit(yaw: float, arm: float) -> Fit:
         state = MotionState(
-            rest[0] + who.place_m, _stance(yaw, arm), np.zeros(fitter.model.n_pose), factors, information
+            rest[0] + person.place_m, _stance(yaw, arm), np.zeros(fitter.model.n_pose), factors, information
         )  # fmt: skip
         return fit_to_blobs(fitter, views, state, params.rough_iterations, terms, params)
 
-    ways, aside = _ways(who, [centre(fitter.drawings[i].camera) for i in who.blobs])
-    roughly: dict[tuple[float, float], Fit] = {}
-    for stance in product(ways, params.arms_rad):
-        roughly[stance] = fitted(*stance)
+    directions, sideways = _facing_directions(
+        person, [centre(fitter.drawings[i].camera) for i in person.blobs]
+    )
+    rough_fits: dict[tuple[float, float], Fit] = {}
+    for stance in product(directions, params.arms_rad):
+        rough_fits[stance] = rough_fit(*stance)
         yield
-    _, arm = min(roughly, key=lambda stance: roughly[stance].cost)
-    for way in aside:
-        roughly[way, arm] = fitted(way, arm)
+    _, arm = min(rough_fits, key=lambda stance: rough_fits[stance].cost)
+    for yaw in sideways:
+        rough_fits[yaw, arm] = rough_fit(yaw, arm)
         yield
-    best = sorted(roughly.values(), key=lambda fit: fit.cost)
+    best = sorted(rough_fits.values(), key=lambda fit: fit.cost)
     refined: list[Fit] = []
     for one in best[: params.refined]:
         refined.append(fit_to_blobs(fitter, views, one.state, params.iterations, terms, params))
@@ -197,25 +207,27 @@ def fit_to_blobs(
     terms: Sequence[Term],
     params: StartParams,
 ) -> Fit:
-    """A body fitted to the blobs from this state on, by a silhouette fitter."""
+    """A silhouette fit to the blobs, starting from this state."""
     return fitter.fit(state, views, params.loose_s, iterations, terms=terms)
 
 
-def _ways(who: PersonCandidate, eyes_m: Sequence[Floats]) -> tuple[list[float], list[float]]:
+def _facing_directions(
+    person: PersonCandidate, eyes_m: Sequence[Floats]
+) -> tuple[list[float], list[float]]:
     """Facing directions to try [rad], 0 along +Z: towards the cameras, and turned to either side for cameras with nearly
     the same direction; four quarters if cameras stand all around."""
-    away = np.array([eye - who.place_m for eye in eyes_m])[:, [0, 2]]
+    away = np.array([eye - person.place_m for eye in eyes_m])[:, [0, 2]]
     away /= np.linalg.norm(away, axis=1, keepdims=True)
     middle = away.mean(axis=0)
     yaw = float(np.arctan2(middle[0], middle[1]))
     together = np.linalg.norm(middle)
     if together > _ONE_SIDE:
-        return [yaw], [yaw - _PAST_RAD, yaw + _PAST_RAD] if together > _BESIDE else []
+        return [yaw], [yaw - _PAST_RAD, yaw + _PAST_RAD] if together > _ADJACENT else []
     return [yaw + quarter * 0.5 * np.pi for quarter in range(4)], []
 
 
 def _stance(yaw: float, arm: float) -> Floats:
-    """Local rotations (J,4) of somebody upright whose arms are turned by `arm` [rad] from the T-pose."""
+    """Local rotations (J,4) of an upright body with arms turned by `arm` [rad] from the T-pose."""
     local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
     local[0] = rotations.exp(np.array([0.0, yaw, 0.0]))
     for side, mirror in (("left", 1.0), ("right", -1.0)):

@@ -7,7 +7,7 @@ from mocapd.body.shape import mean_shape
 from mocapd.published.hecht2009.build import build_hecht2009_tracker
 from mocapd.published.hecht2009.mass_spring.body_points import LIMBS
 from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
-from mocapd.published.hecht2009.mass_spring.simulation import relaxed
+from mocapd.published.hecht2009.mass_spring.simulation import relaxed_state
 from mocapd.published.hecht2009.part_confidence import joint_confidence, joint_uncertainty_m
 from mocapd.published.hecht2009.stances import stances_of
 from mocapd.tracking.base import Track
@@ -54,7 +54,7 @@ def test_somebody_who_comes_is_followed_and_lost_when_gone(
 
 def test_raised_arms_are_as_long_as_the_bodys_and_reach_outwards() -> None:
     body = build_body(mean_shape(1.75))
-    points = relaxed(body, np.array([0.0, 1.64, 0.0])).points_m
+    points = relaxed_state(body, np.array([0.0, 1.64, 0.0])).points_m
     stances = stances_of(body, points, (0.5 * np.pi,))
     for limb, outwards in (("left_arm", 1.0), ("right_arm", -1.0)):
         raised, rest = stances[limb][-1], body.rest_m[list(LIMBS[limb])]

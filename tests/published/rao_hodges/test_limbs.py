@@ -7,7 +7,7 @@ from lab.rao_hodges.experiment import STATURE_M, chains, points_in
 from mocapd.body.shape import mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, joint_positions
 from mocapd.published.rao_hodges.body_chains import body_chains, place_of, pose_of
-from mocapd.published.rao_hodges.limb_weight import ball_samples, match_points, posed
+from mocapd.published.rao_hodges.limb_weight import ball_samples, match_points, pose_limb
 from mocapd.published.rao_hodges.point_cloud import point_cloud
 from mocapd.types import Floats, Pose
 
@@ -47,7 +47,9 @@ def test_shares_are_those_of_points_looked_at_one_by_one() -> None:
     chain = chains()["legs"]
     points = rng.uniform([-0.5, 0.0, -0.5], [0.5, 1.0, 0.6], (4000, 3))
     particles = BENT + 0.3 * rng.standard_normal((5, 10))
-    found = match_points(chain, posed(chain, particles, ROOT_R, ROOT_M), point_cloud(points, 1e9))
+    found = match_points(
+        chain, pose_limb(chain, particles, ROOT_R, ROOT_M), point_cloud(points, 1e9)
+    )
     for n, angles in enumerate(particles):
         inside = naive_inside(angles, points)
         assert found.inside[n] == pytest.approx(inside.any(axis=0).mean(), abs=1e-3)
@@ -60,7 +62,7 @@ def test_the_true_pose_holds_all_points_and_has_no_empty_ellipsoid() -> None:
     points = points_in(chain, BENT, 3000, np.random.default_rng(2))
     cloud = point_cloud(points, 3000 / volume_m3())
     away = BENT + np.radians([0, 0, 25.0, -20.0, 0, 0, 0, 0, 0, 0])
-    found = match_points(chain, posed(chain, np.array([BENT, away]), ROOT_R, ROOT_M), cloud)
+    found = match_points(chain, pose_limb(chain, np.array([BENT, away]), ROOT_R, ROOT_M), cloud)
     assert found.inside[0] > 0.999
     assert found.full[0].min() > 0.85
     assert found.inside[1] < 0.9
@@ -74,7 +76,7 @@ def test_only_the_converse_term_sees_an_ellipsoid_that_is_empty() -> None:
     cloud = point_cloud(points, 3000 / volume_m3())
     away = BENT.copy()
     away[4] -= np.radians(60.0)
-    found = match_points(chain, posed(chain, np.array([BENT, away]), ROOT_R, ROOT_M), cloud)
+    found = match_points(chain, pose_limb(chain, np.array([BENT, away]), ROOT_R, ROOT_M), cloud)
     lost = 1.0 - found.weight(0.0)[1] / found.weight(0.0)[0]
     lost_with_it = 1.0 - found.weight(1.0)[1] / found.weight(1.0)[0]
     assert lost < 0.05
@@ -85,10 +87,10 @@ def test_knees_bend_backwards_and_elbows_forwards() -> None:
     legs, arm = chains()["legs"], chains()["left_arm"]
     knee = np.zeros(10)
     knee[3] = 0.5 * np.pi
-    foot = posed(legs, knee, ROOT_R, ROOT_M).joints_m[0, 2]
+    foot = pose_limb(legs, knee, ROOT_R, ROOT_M).joints_m[0, 2]
     assert foot[2] < -0.3
     elbow = np.array([0.0, 0.0, 0.0, 0.5 * np.pi])
-    forearm = posed(arm, elbow, ROOT_R, ROOT_M).R[0, 1]
+    forearm = pose_limb(arm, elbow, ROOT_R, ROOT_M).R[0, 1]
     assert forearm @ [1.0, 0.0, 0.0] == pytest.approx([0.0, 0.0, 1.0], abs=0.05)
 
 
@@ -102,7 +104,7 @@ def test_angles_of_a_pose_lead_back_to_it() -> None:
     # a hinge is turned about its bone by the angle that makes it one: none, where it is one
     assert again.angles == pytest.approx(angles, abs=1e-6)
     joints = joint_positions(skeleton_of(body.shape), pose)
-    whole = posed(body.whole, angles, place.root_turn, place.root_m)
+    whole = pose_limb(body.whole, angles, place.root_turn, place.root_m)
     for bone, joint in zip(body.whole.bones[3:], whole.joints_m[0, 3:], strict=True):
         assert joints[INDEX[bone]] == pytest.approx(joint, abs=1e-9)
 

@@ -25,7 +25,7 @@ from mocapd.published.wang2011.drawing import (
     posture,
     triangle_points,
 )
-from mocapd.published.wang2011.params import Params, published, tolerating
+from mocapd.published.wang2011.params import Params, paper_params, tolerating
 from mocapd.published.wang2011.patch_kernels import (
     centroid_rows,
     classified_patches,
@@ -349,4 +349,4 @@ def test_the_switches_make_the_papers_baseline(database: PoseDatabase) -> None:
         for seq in range(1, 4):
             state = t.step(frame_set(standing(), seq)).body
         assert state.tracking is Tracking.LIVE
-    assert published(baseline=True) == baseline
+    assert paper_params(baseline=True) == baseline

@@ -42,7 +42,7 @@ class LimbCloud:
 def start_cloud(points_m: Floats, n: int, n_cameras: int, params: LimbScoreParams) -> LimbCloud:
     """n particles at rest at one place (3,3) [m]."""
     points = np.repeat(points_m[None], n, axis=0)
-    usual = UsualPenalties.unknown(n_cameras, params)
+    usual = UsualPenalties.initial(n_cameras, params)
     return LimbCloud(points, points.copy(), TICK_S, points_m.copy(), np.zeros(3), usual)
 
 

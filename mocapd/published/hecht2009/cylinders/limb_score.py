@@ -17,7 +17,7 @@ from mocapd.published.hecht2009.cylinders.work_camera import WorkCamera
 from mocapd.types import Bytes, Floats, Singles
 
 EDGE, SURFACE = 0, 1
-_SEEN = 0.5  # share of a limb that tells what its penalty usually is
+_VISIBLE = 0.5  # share of a limb above which its penalties enter the running mean
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,22 +37,22 @@ class LimbView:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Penalties:
-    """Of N particles in V views: mean (V,N,2), 0..1, over visible samples, EDGE and SURFACE; seen (V,N,2): their share."""
+    """Of N particles in V views: mean (V,N,2), 0..1, over visible samples, EDGE and SURFACE; visible (V,N,2): their share."""
 
     mean: Floats
-    seen: Floats
+    visible: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UsualPenalties:
-    """Running means of one limb's penalties while visible: mean (cameras,2), EDGE and SURFACE; seen_s (cameras,2): the
+    """Running means of one limb's penalties while visible: mean (cameras,2), EDGE and SURFACE; averaged_s (cameras,2): the
     averaging time so far, at most the time constant."""
 
     mean: Floats
-    seen_s: Floats
+    averaged_s: Floats
 
     @classmethod
-    def unknown(cls, n_cameras: int, params: LimbScoreParams) -> "UsualPenalties":
+    def initial(cls, n_cameras: int, params: LimbScoreParams) -> "UsualPenalties":
         """The initial state."""
         return cls(np.tile(params.usual, (n_cameras, 1)), np.zeros((n_cameras, 2)))
 
@@ -87,7 +87,7 @@ def limb_penalties(
         reference = view.reference[list(parts)]
         score_in_view(
             points_m, radii_m, view.camera, view.colour, view.edges, reference, view.occlusion,
-            others, sampling, out.mean[v], out.seen[v],
+            others, sampling, out.mean[v], out.visible[v],
         )  # fmt: skip
     return out
 
@@ -95,10 +95,10 @@ def limb_penalties(
 def log_scores(
     penalties: Penalties, usual: UsualPenalties, views: Sequence[LimbView], params: LimbScoreParams
 ) -> Floats:
-    """Logarithm (N,) of each particle's likelihood up to a constant, summed over the views. A view that sees none of
-    them adds the same to all."""
+    """Logarithm (N,) of each particle's likelihood up to a constant, summed over the views. A view that shows
+    none of them adds the same to all."""
     hidden = usual.mean[[view.index for view in views]][:, None] + params.hidden_surplus
-    charged = penalties.seen * penalties.mean + (1.0 - penalties.seen) * hidden
+    charged = penalties.visible * penalties.mean + (1.0 - penalties.visible) * hidden
     weight = np.array([params.edge_weight, params.surface_weight if params.appearance else 0.0])
     out: Floats = -(charged.sum(axis=0) @ weight)
     return out
@@ -124,14 +124,14 @@ def learn_usual(
     dt_s: float,
     params: LimbScoreParams,
 ) -> UsualPenalties:
-    """With the penalties of particles that weigh `weights` (N,), dt_s after the last: a mean over all looks at first,
-    a running average later. Kept where a view sees less than half of the limb, and with a time constant of 0."""
-    mean, seen_s = usual.mean.copy(), usual.seen_s.copy()
+    """Running mean with the penalties of particles of these weights (N,), dt_s after the last ones; a plain mean at first.
+    Unchanged if a view shows less than half of the limb, and with a time constant of 0."""
+    mean, averaged_s = usual.mean.copy(), usual.averaged_s.copy()
     for v, view in enumerate(views):
-        share = weights @ penalties.seen[v]
-        now = weights @ (penalties.seen[v] * penalties.mean[v]) / np.maximum(share, 1e-9)
-        gain = np.where(share > _SEEN, min(dt_s, params.usual_s), 0.0)
-        total = np.minimum(seen_s[view.index] + gain, params.usual_s)
+        share = weights @ penalties.visible[v]
+        now = weights @ (penalties.visible[v] * penalties.mean[v]) / np.maximum(share, 1e-9)
+        gain = np.where(share > _VISIBLE, min(dt_s, params.usual_s), 0.0)
+        total = np.minimum(averaged_s[view.index] + gain, params.usual_s)
         mean[view.index] += gain / np.maximum(total, 1e-9) * (now - mean[view.index])
-        seen_s[view.index] = total
-    return UsualPenalties(mean, seen_s)
+        averaged_s[view.index] = total
+    return UsualPenalties(mean, averaged_s)

@@ -19,22 +19,22 @@ _SAMPLES = 2, 6  # of a ring, along and across
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AppearanceModel:
-    """Of V cameras and C parts: colour (V,C,10,3) BGR 0..255 at the middles of ten rings from start to end; seen_s
+    """Of V cameras and C parts: colour (V,C,10,3) BGR 0..255 at the middles of ten rings from start to end; visible_s
     (V,C,10): time that each was visible, weighted by confidence and visible share."""
 
     colour: Singles
-    seen_s: Floats
+    visible_s: Floats
 
     @classmethod
-    def unknown(cls, n_views: int, n_parts: int) -> "AppearanceModel":
+    def initial(cls, n_views: int, n_parts: int) -> "AppearanceModel":
         """The initial state."""
         return cls(
             np.zeros((n_views, n_parts, RINGS, 3), np.float32), np.zeros((n_views, n_parts, RINGS))
         )
 
     def is_fixed(self, params: LimbAppearanceParams) -> bool:
-        """Whether no ring in any view changes any more."""
-        return bool((self.seen_s >= params.enough_s).all())
+        """True if no ring in any view changes any more."""
+        return bool((self.visible_s >= params.enough_s).all())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,13 +75,15 @@ def learn(
     """
     s = (np.arange(RINGS) + 0.5) / RINGS
     local = confidence[:, :1] * (1.0 - s) + confidence[:, 1:] * s
-    seen = model.seen_s[view]
-    gain = np.where(seen < params.enough_s, np.clip(local, 0.0, 1.0) * observed.share * dt_s, 0.0)
-    colours, seen_s = model.colour.copy(), model.seen_s.copy()
-    rate = gain / np.maximum(seen + gain, 1e-12)
+    before_s = model.visible_s[view]
+    gain = np.where(
+        before_s < params.enough_s, np.clip(local, 0.0, 1.0) * observed.share * dt_s, 0.0
+    )
+    colours, visible_s = model.colour.copy(), model.visible_s.copy()
+    rate = gain / np.maximum(before_s + gain, 1e-12)
     colours[view] += rate[..., None] * (observed.colour - colours[view])
-    seen_s[view] += gain
-    return replace(model, colour=colours, seen_s=seen_s)
+    visible_s[view] += gain
+    return replace(model, colour=colours, visible_s=visible_s)
 
 
 def reference_colours(model: AppearanceModel, along: int) -> Singles:
@@ -92,8 +94,8 @@ def reference_colours(model: AppearanceModel, along: int) -> Singles:
     out = np.full((n_views, n_parts, along, 3), np.nan, np.float32)
     for v in range(n_views):
         for c in range(n_parts):
-            known = np.flatnonzero(model.seen_s[v, c] > 0.0)
-            if len(known):
+            learned = np.flatnonzero(model.visible_s[v, c] > 0.0)
+            if len(learned):
                 for k in range(3):
-                    out[v, c, :, k] = np.interp(rows, known, model.colour[v, c, known, k])
+                    out[v, c, :, k] = np.interp(rows, learned, model.colour[v, c, learned, k])
     return out

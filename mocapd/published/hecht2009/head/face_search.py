@@ -31,7 +31,7 @@ from mocapd.vision.face.face_detection import (
 )
 from mocapd.vision.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays
 
-_WINDOWS = 36_000  # looked at in one step: 4 ms
+_WINDOWS = 36_000  # classified in one step: 4 ms
 _LEAST_PX = 21.0  # of a face, with the picture enlarged a little
 _LOOKS = 4  # places of one step that are searched closely
 _REACH = 0.45  # of the side: how far a face moves from one step to the next
@@ -77,7 +77,7 @@ class FaceSearch:
         self._time_s = 0.0
 
     @property
-    def swapped(self) -> bool:
+    def are_swapped(self) -> bool:
         """True if two cameras seem to be swapped."""
         return self._crossed >= max(_SWAPPED_LOOKS, 3 * self._straight)
 
@@ -86,43 +86,43 @@ class FaceSearch:
         self._time_s += dt_s
         if self._past and self._time_s - self._past[-1][0] < _PAST_S:
             return
-        self._past.append((self._time_s, {v.index: _reduced(v.grey) for v in views}))
+        self._past.append((self._time_s, {v.index: _downscale(v.grey) for v in views}))
         del self._past[:-_PASTS]
 
     def step(self, views: Sequence[HeadView], dt_s: float) -> None:
         """Track the candidates and search for further faces; call `remember` before."""
         by_index = {view.index: view for view in views}
-        followed = [self._followed(c, by_index.get(c.view), dt_s) for c in self.candidates]
+        followed = [self._follow(c, by_index.get(c.view), dt_s) for c in self.candidates]
         self.candidates = [c for c in followed if c.unseen_s <= self._params.candidate_s]
         if views:
             self._look(views)
         self._place_one(views, by_index)
 
-    def _followed(self, of: FaceCandidate, view: HeadView | None, dt_s: float) -> FaceCandidate:
+    def _follow(self, of: FaceCandidate, view: HeadView | None, dt_s: float) -> FaceCandidate:
         older = replace(of, unseen_s=of.unseen_s + dt_s, placed_s=of.placed_s + dt_s)
         if view is None:
             return older
         size = of.box.size_px
-        seen = faces_near(
+        faces = faces_near(
             self._cascade, view.grey, of.box.x_px, of.box.y_px, size, _REACH * size, 2
         )
-        if not seen:
+        if not faces:
             return older
-        alive = self._alive(view, seen[0])
-        return replace(older, box=seen[0], unseen_s=0.0, looks=of.looks + 1, alive=alive)
+        alive = self._alive(view, faces[0])
+        return replace(older, box=faces[0], unseen_s=0.0, looks=of.looks + 1, alive=alive)
 
     def _place_one(self, views: Sequence[HeadView], by_index: dict[int, HeadView]) -> None:
         """Update the oldest position of the current candidates: only one a step, because it takes time."""
-        seen = [i for i, c in enumerate(self.candidates) if c.unseen_s == 0.0]
-        if not seen:
+        current = [i for i, c in enumerate(self.candidates) if c.unseen_s == 0.0]
+        if not current:
             return
-        i = max(seen, key=lambda i: self.candidates[i].placed_s)
+        i = max(current, key=lambda i: self.candidates[i].placed_s)
         of = self.candidates[i]
-        placed = self.placed(by_index[of.view], of.box, views)
+        placed = self.place(by_index[of.view], of.box, views)
         self.candidates[i] = replace(of, placed=placed, placed_s=0.0)
 
-    def placed(self, view: HeadView, box: FaceBox, views: Sequence[HeadView]) -> PlacedFace:
-        """The position of the face in this box; mismatches count towards `swapped`."""
+    def place(self, view: HeadView, box: FaceBox, views: Sequence[HeadView]) -> PlacedFace:
+        """The position of the face in this box; mismatches count towards `are_swapped`."""
         params = self._params
         placed = placed_face(
             views, view, box, self._cascade, self._stature_m, params, self._is_still
@@ -151,20 +151,20 @@ class FaceSearch:
             size, region = self._work.pop(0)
             windows.append(face_windows(self._cascade, view.grey, (size,), region))
             n += _count(size, region)
-        known = [c.box for c in self.candidates if c.view == view.index]
+        tracked = [c.box for c in self.candidates if c.view == view.index]
         places = [
             b
             for b in group_windows(np.concatenate(windows), 1)
-            if not any(_over(b, k) for k in known)
+            if not any(_over(b, k) for k in tracked)
         ]
         for place in places[:_LOOKS]:
-            seen = faces_near(
+            faces = faces_near(
                 self._cascade, view.grey, place.x_px, place.y_px, place.size_px, 0.3 * place.size_px,
                 self._params.least_windows,
             )  # fmt: skip
-            if seen:
-                alive = self._alive(view, seen[0])
-                self.candidates.append(FaceCandidate(view.index, seen[0], 0.0, 1, alive))
+            if faces:
+                alive = self._alive(view, faces[0])
+                self.candidates.append(FaceCandidate(view.index, faces[0], 0.0, 1, alive))
         self.candidates.sort(key=lambda c: -c.box.size_px)
         del self.candidates[self._params.candidates :]
 
@@ -173,7 +173,7 @@ class FaceSearch:
 
     def _alive(self, view: HeadView, box: FaceBox) -> bool | None:
         """True if the face's region differs in most pictures of the last seconds."""
-        now = _patch(_reduced(view.grey), box)
+        now = _patch(_downscale(view.grey), box)
         then = [
             _patch(pictures[view.index], box)
             for t_s, pictures in self._past
@@ -213,7 +213,7 @@ def _over(a: FaceBox, b: FaceBox) -> bool:
     return bool(np.hypot(a.x_px - b.x_px, a.y_px - b.y_px) < 0.6 * max(a.size_px, b.size_px))
 
 
-def _reduced(grey: Bytes) -> Bytes:
+def _downscale(grey: Bytes) -> Bytes:
     h, w = grey.shape
     out = cv2.resize(grey, (w // _SMALL, h // _SMALL), interpolation=cv2.INTER_AREA)
     return np.asarray(out, np.uint8)

@@ -30,14 +30,14 @@ class HeadObservations:
 
 
 def along_ray(from_m: Floats, ray: Floats, sigma_across_m: float) -> tuple[Floats, Floats]:
-    """Somewhere on the ray from a point (3,) along a unit vector (3,)."""
+    """A measurement on the ray from a point (3,) along a unit vector (3,)."""
     return from_m, (np.eye(3) - np.outer(ray, ray)) / sigma_across_m**2
 
 
 def at_distance(
     from_m: Floats, ray: Floats, distance_m: float, sigma_m: float
 ) -> tuple[Floats, Floats]:
-    """At this distance from a point (3,), along a unit vector (3,)."""
+    """A measurement at this distance from a point (3,), along a unit vector (3,)."""
     return from_m + distance_m * ray, np.outer(ray, ray) / sigma_m**2
 
 
@@ -57,7 +57,7 @@ def cloud_at(
     return Cloud(place, rng.normal(0.0, 0.3, (params.particles, 3)))
 
 
-def predicted(cloud: Cloud, dt_s: float, params: HeadParams, rng: np.random.Generator) -> Cloud:
+def predict(cloud: Cloud, dt_s: float, params: HeadParams, rng: np.random.Generator) -> Cloud:
     """The cloud after dt: constant velocity and noise."""
     push = rng.normal(0.0, params.push_sd_m_s2, cloud.place_m.shape)
     jitter = rng.normal(0.0, params.jitter_sd_m * np.sqrt(30.0 * dt_s), cloud.place_m.shape)
@@ -73,20 +73,22 @@ def moments(place_m: Floats, weight: Floats | None = None) -> tuple[Floats, Floa
     return mean, (away * w[:, None]).T @ away + _SD_FLOOR_M**2 * np.eye(3)
 
 
-def updated(mean_m: Floats, covariance_m2: Floats, seen: HeadObservations) -> tuple[Floats, Floats]:
+def fuse(
+    mean_m: Floats, covariance_m2: Floats, measured: HeadObservations
+) -> tuple[Floats, Floats]:
     """Mean and covariance with all measurements taken as Gaussian."""
     prior = np.linalg.inv(covariance_m2)
-    information = prior + seen.information.sum(axis=0)
-    right = prior @ mean_m + np.einsum("oij,oj->i", seen.information, seen.means_m)
+    information = prior + measured.information.sum(axis=0)
+    right = prior @ mean_m + np.einsum("oij,oj->i", measured.information, measured.means_m)
     covariance = np.linalg.inv(information)
     return covariance @ right, covariance
 
 
-def is_far(cloud: Cloud, seen: HeadObservations) -> bool:
+def is_far(cloud: Cloud, measured: HeadObservations) -> bool:
     """True if a measurement is too far from all particles for the same head, beyond chance."""
     mean, covariance = moments(cloud.place_m)
-    for at, information in zip(seen.means_m, seen.information, strict=True):
-        # across what the measurement tells of, with the cloud's own spread on top
+    for at, information in zip(measured.means_m, measured.information, strict=True):
+        # along each measured axis, with the cloud's own spread added
         values, axes = np.linalg.eigh(information)
         for value, axis in zip(values, axes.T, strict=True):
             if value > 1e-6:
@@ -97,27 +99,27 @@ def is_far(cloud: Cloud, seen: HeadObservations) -> bool:
 
 
 def cloud_about(
-    seen: HeadObservations, before: Cloud, params: HeadParams, rng: np.random.Generator
+    measured: HeadObservations, before: Cloud, params: HeadParams, rng: np.random.Generator
 ) -> Cloud:
     """Particles sampled at the measurements, with unmeasured directions unchanged and a wide velocity."""
     mean, _ = moments(before.place_m)
-    middle, covariance = updated(mean, _WIDE_M**2 * np.eye(3), seen)
+    middle, covariance = fuse(mean, _WIDE_M**2 * np.eye(3), measured)
     return cloud_at(middle, covariance, params, rng)
 
 
-def proposed(
-    cloud: Cloud, seen: HeadObservations, params: HeadParams, rng: np.random.Generator
+def propose(
+    cloud: Cloud, measured: HeadObservations, params: HeadParams, rng: np.random.Generator
 ) -> tuple[Cloud, Floats]:
     """Draws some of the particles at the measurements; with the logarithm (P,) of the importance weights.
 
     Importance sampling from a mixture (Isard and Blake, ICondensation, ECCV 1998), the cloud's own density taken as
     Gaussian. Their velocities follow from the cloud's correlation of place and velocity.
     """
-    n = round(params.measured_share * len(cloud.place_m)) if len(seen.means_m) else 0
+    n = round(params.measured_share * len(cloud.place_m)) if len(measured.means_m) else 0
     if n == 0:
         return cloud, np.zeros(len(cloud.place_m))
     mean, covariance = moments(cloud.place_m)
-    fused_mean, fused = updated(mean, covariance, seen)
+    fused_mean, fused = fuse(mean, covariance, measured)
     place, velocity = cloud.place_m.copy(), cloud.velocity_m_s.copy()
     place[:n] = rng.multivariate_normal(fused_mean, fused, n, method="eigh")
     away = cloud.place_m - mean
@@ -125,14 +127,14 @@ def proposed(
     slope = np.linalg.solve(covariance, away.T @ spread / len(away))
     velocity[:n] += (place[:n] - cloud.place_m[:n]) @ slope
     prior = _log_density(place, mean, covariance)
-    measured = _log_density(place, fused_mean, fused)
+    at_measurements = _log_density(place, fused_mean, fused)
     share = n / len(place)
-    mixture = np.logaddexp(np.log1p(-share) + prior, np.log(share) + measured)
+    mixture = np.logaddexp(np.log1p(-share) + prior, np.log(share) + at_measurements)
     return Cloud(place, velocity), prior - mixture
 
 
 def _log_density(place_m: Floats, mean_m: Floats, covariance_m2: Floats) -> Floats:
-    """Of a Gaussian, without the factor that all share but for the determinant."""
+    """Log density of a Gaussian, without its constant."""
     away = place_m - mean_m
     far2 = np.einsum("pi,ij,pj->p", away, np.linalg.inv(covariance_m2), away)
     return np.asarray(-0.5 * far2 - 0.5 * np.log(np.linalg.det(covariance_m2)))
@@ -144,7 +146,7 @@ def weights(log_weight: Floats) -> Floats:
     return np.asarray(w / w.sum())
 
 
-def resampled(cloud: Cloud, weight: Floats, rng: np.random.Generator) -> Cloud:
+def resample(cloud: Cloud, weight: Floats, rng: np.random.Generator) -> Cloud:
     """The same number of particles with equal weights, by systematic resampling."""
     n = len(weight)
     at = (rng.random() + np.arange(n)) / n

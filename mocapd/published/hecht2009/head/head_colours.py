@@ -39,13 +39,13 @@ class HeadEllipse:
     up: Floats
 
 
-def unknown_colours() -> HeadColours:
+def initial_colours() -> HeadColours:
     """The initial state: all odds are even."""
     colours, chroma = kernels.SIDE**3, kernels.CHROMA**2
     return HeadColours(*(np.zeros(n, np.float32) for n in (colours, colours, chroma, chroma, colours, chroma)))  # fmt: skip
 
 
-def are_known(colours: HeadColours) -> bool:
+def has_colours(colours: HeadColours) -> bool:
     """True after the first learned head."""
     return float(colours.head.sum()) >= _LEAST
 
@@ -63,7 +63,7 @@ def light_gain(picture: Bytes, outline: HeadEllipse) -> float:
     return float(np.clip(_MIDDLE_GREY / max(mean, 1.0), *_GAIN))
 
 
-def learned(
+def update_colours(
     colours: HeadColours, picture: Bytes, outline: HeadEllipse, facing: bool, dt_s: float
 ) -> HeadColours:
     """Updated with this picture (H,W,3) BGR; `facing`: a face was detected in it, so that its middle is skin."""

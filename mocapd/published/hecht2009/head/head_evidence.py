@@ -11,11 +11,11 @@ from mocapd.published.hecht2009.head.face_placing import PlacedFace
 from mocapd.published.hecht2009.head.head_cloud import Cloud, along_ray, at_distance
 from mocapd.published.hecht2009.head.head_colours import (
     HeadColours,
-    are_known,
     face_side,
-    learned,
+    has_colours,
+    initial_colours,
     light_gain,
-    unknown_colours,
+    update_colours,
 )
 from mocapd.published.hecht2009.head.head_params import HeadParams
 from mocapd.published.hecht2009.head.head_particle_kernels import score_heads
@@ -32,9 +32,9 @@ from mocapd.types import Bytes, Floats
 from mocapd.vision.face.face_detection import FaceBox, faces_near
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
-_REACH = 0.5  # of the face's side: how far from where it is expected it is looked for
-_SAME = 0.7  # of the face's side: farther off it is another's
-_WINDOWS = 1  # that find a face where one is expected
+_REACH = 0.5  # of the face's side: search radius about the predicted place
+_SAME = 0.7  # of the face's side: a face farther away belongs to another head
+_WINDOWS = 1  # detections that confirm a predicted face
 _PATCH = 0.8  # of the head's half height: the patch whose distance is taken
 # patches for a head that is partly hidden by hands: crown, left, right; middle in half widths and heights, and size
 _PARTS = ((0.0, 0.45, 0.45), (-0.45, 0.0, 0.45), (0.45, 0.0, 0.45))
@@ -43,16 +43,16 @@ _NEARER_M = 0.1  # limit of a jump towards the camera, for any uncertainty: a ha
 _LEAST_SKIN = 0.12  # share of the head, under which it is turned away
 _FULL_SIDE = 0.5  # offset of the skin's middle on a head in profile
 _NO_FOREGROUND = np.zeros((0, 0), np.uint8)
-# a hand before the face lowers the correlation: it may lose that much more than faces lost before
+# a hand before the face lowers the correlation: accepted loss, relative to that of detected faces
 _LOSS_TIMES = 2.5
 _LOSS_MORE = 0.01
 _USUAL_LOSS = 0.05  # initial value
-_LOSS_SHARE = 0.05  # of a new face in what is usual
+_LOSS_SHARE = 0.05  # weight of a new face in the running mean
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeadGuess:
-    """Where the head's middle (3,) [m] is expected, its velocity (3,) [m/s], and one standard deviation of the distance."""
+    """Predicted middle (3,) of the head [m], its velocity (3,) [m/s], and one standard deviation of its distance."""
 
     middle_m: Floats
     velocity_m_s: Floats
@@ -81,11 +81,11 @@ class HeadEvidence:
 
     def reset(self) -> None:
         """Forget the colours."""
-        self._colours: list[HeadColours] = [unknown_colours() for _ in range(self._n)]
+        self._colours: list[HeadColours] = [initial_colours() for _ in range(self._n)]
         self._turn = 0
         self._loss = _USUAL_LOSS
 
-    def seen(self, views: Sequence[HeadView], guess: HeadGuess) -> HeadSighting:
+    def observe(self, views: Sequence[HeadView], guess: HeadGuess) -> HeadSighting:
         """Faces near the predicted head in each view, and its distance from pairs of views."""
         boxes: list[FaceBox | None] = [None] * self._n
         parts: list[tuple[Floats, Floats]] = []
@@ -191,9 +191,9 @@ class HeadEvidence:
         """Scores of the particles (P,), by colours, outline and foreground."""
         out = np.zeros(len(cloud.place_m))
         for view in views:
-            if are_known(self._colours[view.index]) or view.has_foreground:
+            if has_colours(self._colours[view.index]) or view.has_foreground:
                 middles = cloud.place_m + view.offset_s * cloud.velocity_m_s
-                score = self._scored(view, middles, guess_m, view.foreground)
+                score = self._scores(view, middles, guess_m, view.foreground)
                 if score is not None:
                     out += self._params.colour_weight * score
         return out
@@ -204,12 +204,12 @@ class HeadEvidence:
         return max((self._sure(v, at) for v, at in zip(views, at_m, strict=True)), default=0.0)
 
     def _sure(self, view: HeadView, at_m: Floats) -> float:
-        if not are_known(self._colours[view.index]):
+        if not has_colours(self._colours[view.index]):
             return 0.0
-        score = self._scored(view, at_m[None], at_m, _NO_FOREGROUND)
+        score = self._scores(view, at_m[None], at_m, _NO_FOREGROUND)
         return 0.0 if score is None else float(score[0])
 
-    def _scored(
+    def _scores(
         self, view: HeadView, middles_m: Floats, guess_m: Floats, foreground: Bytes
     ) -> Floats | None:
         outline = ellipse_of(view.camera, guess_m, self._size)
@@ -228,7 +228,7 @@ class HeadEvidence:
         for view in views:
             outline = ellipse_of(view.camera, face.middle_m, self._size)
             if outline is not None:
-                self._colours[view.index] = learned(
+                self._colours[view.index] = update_colours(
                     self._colours[view.index], view.pixels, outline, view.index in face.boxes, 0.0
                 )
 
@@ -244,7 +244,7 @@ class HeadEvidence:
                 continue
             facing = boxes[view.index] is not None
             if facing or self._sure(view, at_m) >= self._params.learn_support:
-                self._colours[view.index] = learned(
+                self._colours[view.index] = update_colours(
                     self._colours[view.index], view.pixels, outline, facing, dt_s
                 )
 
@@ -259,10 +259,10 @@ class HeadEvidence:
         for view in views:
             at_m = middle_m + view.offset_s * velocity_m_s
             outline = ellipse_of(view.camera, at_m, self._size)
-            seen = outline and face_side(self._colours[view.index], view.pixels, outline)
-            if not seen or seen[0] < _LEAST_SKIN:
+            side = outline and face_side(self._colours[view.index], view.pixels, outline)
+            if not side or side[0] < _LEAST_SKIN:
                 continue
             towards = centre(view.camera) - at_m
-            yaw = np.arctan2(towards[0], towards[2]) + np.arcsin(np.clip(seen[1] / _FULL_SIDE, -1.0, 1.0))  # fmt: skip
-            way += seen[0] * np.array([np.sin(yaw), np.cos(yaw)])
+            yaw = np.arctan2(towards[0], towards[2]) + np.arcsin(np.clip(side[1] / _FULL_SIDE, -1.0, 1.0))  # fmt: skip
+            way += side[0] * np.array([np.sin(yaw), np.cos(yaw)])
         return float(np.arctan2(way[0], way[1])) if way.any() else None

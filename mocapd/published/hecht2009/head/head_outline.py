@@ -13,7 +13,7 @@ from mocapd.body.head_proportions import FACE_WIDTH
 from mocapd.geometry.camera_model import centre, normalised
 from mocapd.geometry.triangulation import triangulate
 from mocapd.published.hecht2009.head.face_placing import Depth, PlacedFace
-from mocapd.published.hecht2009.head.head_colours import unknown_colours
+from mocapd.published.hecht2009.head.head_colours import initial_colours
 from mocapd.published.hecht2009.head.head_params import HeadParams
 from mocapd.published.hecht2009.head.head_particle_kernels import score_heads
 from mocapd.published.hecht2009.head.head_samples import INSIDE, OUTLINE
@@ -123,10 +123,12 @@ def _tops(view: HeadView, stature_m: float, params: HeadParams) -> list[FaceBox]
     rows, columns = np.nonzero(labels == 1 + int(np.argmax(area)))
     top = int(rows.min())
     crown = np.array([columns[rows < top + _TOP_ROWS].mean(), top]) * _SMALL + 0.5 * (_SMALL - 1)
-    return _fitted(view, crown, stature_m, params)
+    return _fit_outlines(view, crown, stature_m, params)
 
 
-def _fitted(view: HeadView, crown: Floats, stature_m: float, params: HeadParams) -> list[FaceBox]:
+def _fit_outlines(
+    view: HeadView, crown: Floats, stature_m: float, params: HeadParams
+) -> list[FaceBox]:
     """Of heads at all distances with their crown there, the one that the foreground fits best."""
     size = head_size(stature_m)
     focal_px = float(view.camera.K[1, 1])
@@ -142,7 +144,7 @@ def _fitted(view: HeadView, crown: Floats, stature_m: float, params: HeadParams)
     score = np.empty(_DISTANCES)
     score_heads(
         middles_m, np.array([size.width_m, size.height_m]), INSIDE, OUTLINE, view.stereo.arrays,
-        view.pixels, unknown_colours().head_odds, 1.0, view.foreground, outline.up, params.edge_weight,
+        view.pixels, initial_colours().head_odds, 1.0, view.foreground, outline.up, params.edge_weight,
         params.full_edge, score,
     )  # fmt: skip
     around = np.concatenate([[-np.inf], score, [-np.inf]])

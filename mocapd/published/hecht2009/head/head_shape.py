@@ -31,7 +31,7 @@ def head_size(stature_m: float) -> HeadSize:
     return HeadSize(HALF_WIDTH * stature_m, HALF_HEIGHT * stature_m, HALF_LENGTH * stature_m)
 
 
-def turned(yaw_rad: float) -> Floats:
+def yaw_rotation(yaw_rad: float) -> Floats:
     """world_from_head (3,3) of an upright head that faces +Z turned by yaw to its left."""
     c, s = np.cos(yaw_rad), np.sin(yaw_rad)
     return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
@@ -52,7 +52,7 @@ def face_of(middle_m: Floats, stature_m: float, yaw_rad: float | None) -> Floats
 def _from_middle(offset: Floats, yaw_rad: float | None) -> Floats:
     if yaw_rad is None:
         return offset * (0.0, 1.0, 0.0)
-    turned_offset: Floats = turned(yaw_rad) @ offset
+    turned_offset: Floats = yaw_rotation(yaw_rad) @ offset
     return turned_offset
 
 

@@ -21,9 +21,9 @@ from mocapd.published.hecht2009.head.head_cloud import (
     is_far,
     moments,
     observations,
-    predicted,
-    proposed,
-    resampled,
+    predict,
+    propose,
+    resample,
     weights,
 )
 from mocapd.published.hecht2009.head.head_evidence import HeadEvidence, HeadGuess
@@ -43,13 +43,11 @@ from mocapd.vision.face.face_detection import FaceBox
 from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 _START_ACROSS = 0.25  # of the box's side: spread of the first particles across the ray
-_SEARCH_AGAIN_S = 1.0  # without its face before another one is looked for
-_HAND_OVER_S = 2.0  # without its face before another one, as near, is followed instead
+_SEARCH_AGAIN_S = 1.0  # without its face before the search for another one starts
+_HAND_OVER_S = 2.0  # without its face before another one, as near, replaces it
 _AS_NEAR = 1.25
-_ALONE_S = (
-    0.4  # without its face in some view before it is looked for there along another view's ray
-)
-_CHECK_S = 0.25  # from one such look to the next
+_ALONE_S = 0.4  # without its face in some view before a search along another view's ray
+_CHECK_S = 0.25  # between two such searches
 _APART_M = 0.3  # a face that is farther from the tracked head belongs to another
 
 
@@ -101,7 +99,7 @@ class HeadTracker:
             self._faceless_s = self._params.facing_s + 1e-6
             self._near_m = None
         if self._cloud is not None:
-            track = self._tracked(self._cloud, views, dt_s)
+            track = self._filter_step(self._cloud, views, dt_s)
             if self._faceless_s > _SEARCH_AGAIN_S and self._is_doubtful(track):
                 self._search.step(views, dt_s)
                 self._hand_over(track, views)
@@ -115,25 +113,25 @@ class HeadTracker:
 
     def _found(self, views: Sequence[HeadView]) -> HeadTrack:
         """The best detected face; starts to track it if it is live and of a head's size."""
-        if self._search.swapped:
+        if self._search.are_swapped:
             return HeadTrack(HeadState.LOST, fault=StereoFault.SWAPPED)
-        known = [(c, c.placed) for c in self._search.candidates if c.placed and self._is_head(c, c.placed)]  # fmt: skip
-        if not known:
-            return self._outlined(views)
-        best, placed = min(known, key=lambda c: (c[0].alive is not True, self._away_m(c[0], c[1])))
+        heads = [(c, c.placed) for c in self._search.candidates if c.placed and self._is_head(c, c.placed)]  # fmt: skip
+        if not heads:
+            return self._find_by_outline(views)
+        best, placed = min(heads, key=lambda c: (c[0].alive is not True, self._away_m(c[0], c[1])))
         if self._may_start(best):
             self._start(best, placed, views)
-            return self._told(HeadState.TRACKED, best, placed)
-        return self._told(HeadState.FOUND, best, placed)
+            return self._track_of_face(HeadState.TRACKED, best, placed)
+        return self._track_of_face(HeadState.FOUND, best, placed)
 
-    def _outlined(self, views: Sequence[HeadView]) -> HeadTrack:
+    def _find_by_outline(self, views: Sequence[HeadView]) -> HeadTrack:
         """A head without a detected face: a head outline before the background in several successive looks."""
-        seen = outlined_head(views, self._stature_m, self._params)
+        outlined = outlined_head(views, self._stature_m, self._params)
         lost = HeadTrack(HeadState.LOST, fault=self._fault)
-        if seen is None:
+        if outlined is None:
             self._outlines_m = []
             return lost
-        index, box, placed = seen
+        index, box, placed = outlined
         last = self._outlines_m[-1] if self._outlines_m else placed.middle_m
         if float(np.linalg.norm(placed.middle_m - last)) > _APART_M:
             self._outlines_m = []
@@ -143,7 +141,7 @@ class HeadTracker:
         of = FaceCandidate(index, box, 0.0, len(self._outlines_m), True, placed, 0.0)
         self._start(of, placed, views)
         self._faceless_s = self._params.facing_s + 1e-6
-        return replace(self._told(HeadState.TRACKED, of, placed), yaw_rad=None)
+        return replace(self._track_of_face(HeadState.TRACKED, of, placed), yaw_rad=None)
 
     def _is_head(self, of: FaceCandidate, placed: PlacedFace) -> bool:
         """True for a face that was detected more than once, has a head's size, and a distance on which a pair agrees. One
@@ -181,7 +179,7 @@ class HeadTracker:
         self._outlines_m = []
         self._search.candidates.clear()
 
-    def _told(self, state: HeadState, of: FaceCandidate, placed: PlacedFace) -> HeadTrack:
+    def _track_of_face(self, state: HeadState, of: FaceCandidate, placed: PlacedFace) -> HeadTrack:
         yaw = self._towards_rad(placed.middle_m, of.view)
         boxes = tuple(placed.boxes.get(i) for i in range(len(self._cameras)))
         return HeadTrack(
@@ -195,17 +193,19 @@ class HeadTracker:
         way = centre(self._cameras[camera]) - middle_m
         return float(np.arctan2(way[0], way[2]))
 
-    def _tracked(self, before: Cloud, views: Sequence[HeadView], dt_s: float) -> HeadTrack | None:
+    def _filter_step(
+        self, before: Cloud, views: Sequence[HeadView], dt_s: float
+    ) -> HeadTrack | None:
         """The filter's step; None, and the cloud is dropped, after too long without agreeing evidence."""
         params = self._params
-        cloud = predicted(before, dt_s, params, self._rng)
+        cloud = predict(before, dt_s, params, self._rng)
         guess = self._guess(cloud)
-        seen = self._evidence.seen(views, guess)
-        measured = observations(seen.parts)
-        if seen.is_complete and is_far(cloud, measured):
+        sighting = self._evidence.observe(views, guess)
+        measured = observations(sighting.parts)
+        if sighting.is_complete and is_far(cloud, measured):
             # a face with its distance determines the position, but the particles drifted away from it
             cloud = cloud_about(measured, cloud, params, self._rng)
-        cloud, log_weight = proposed(cloud, measured, params, self._rng)
+        cloud, log_weight = propose(cloud, measured, params, self._rng)
         log_weight += self._evidence.log_likelihood(views, cloud, guess.middle_m)
         score_observations(
             np.ascontiguousarray(cloud.place_m), measured.means_m, measured.information,
@@ -214,21 +214,21 @@ class HeadTracker:
         weight = weights(log_weight)
         middle, covariance = moments(cloud.place_m, weight)
         velocity = weight @ cloud.velocity_m_s
-        self._cloud = resampled(cloud, weight, self._rng)
-        has_face = any(box is not None for box in seen.boxes)
-        self._check_place(views, seen.boxes, dt_s)
+        self._cloud = resample(cloud, weight, self._rng)
+        has_face = any(box is not None for box in sighting.boxes)
+        self._check_place(views, sighting.boxes, dt_s)
         support = self._evidence.support(views, middle, velocity)
         self._faceless_s = 0.0 if has_face else self._faceless_s + dt_s
         agrees = has_face or support >= params.least_support
         self._unsupported_s = 0.0 if agrees else self._unsupported_s + dt_s
         lost = self._unsupported_s > params.coast_s or not self._in_reach(middle)
-        if lost or self._search.swapped:
+        if lost or self._search.are_swapped:
             self._cloud = None
             return None
-        self._evidence.learn(views, middle, velocity, seen.boxes, dt_s)
+        self._evidence.learn(views, middle, velocity, sighting.boxes, dt_s)
         facing = self._faceless_s <= params.facing_s
         self._yaw_rad = self._evidence.yaw_rad(views, middle, velocity) if facing else None
-        return self._track(middle, velocity, covariance, seen.boxes, support)
+        return self._track(middle, velocity, covariance, sighting.boxes, support)
 
     def _check_place(
         self, views: Sequence[HeadView], boxes: Sequence[FaceBox | None], dt_s: float
@@ -244,7 +244,7 @@ class HeadTracker:
             if box is None:
                 continue
             self._since_check_s = 0.0
-            placed = self._search.placed(view, box, views)
+            placed = self._search.place(view, box, views)
             if placed.depth is Depth.MEETING and self._is_head_sized(placed):
                 covariance = placed.sigma_along_m**2 * np.eye(3)
                 self._cloud = cloud_at(placed.middle_m, covariance, self._params, self._rng)
@@ -266,7 +266,7 @@ class HeadTracker:
         )  # fmt: skip
 
     def _nearest(self, middle: Floats) -> int:
-        """The camera that stands nearest."""
+        """The nearest camera."""
         return int(np.argmin([np.linalg.norm(centre(c) - middle) for c in self._cameras]))
 
     def _spread(self, middle: Floats, covariance: Floats) -> tuple[float, float]:

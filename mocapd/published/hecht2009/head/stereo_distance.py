@@ -69,7 +69,7 @@ def swept_distance(
     distance fits, or two do, or the patch has no contrast.
     """
     pixels = middle_px + half_px * _SAMPLES
-    values = _sampled(near.grey, pixels)
+    values = _sample(near.grey, pixels)
     if values is None or float(values.std()) < _LEAST_CONTRAST:
         return None
     from_m, middle_ray, directions = _patch_rays(near.camera, middle_px, half_px)
@@ -110,7 +110,7 @@ def _disc() -> Floats:
 _SAMPLES = _disc()
 
 
-def _sampled(grey: Bytes, pixels: Floats) -> Floats | None:
+def _sample(grey: Bytes, pixels: Floats) -> Floats | None:
     """Bilinear grey values (N,) at pixels (N,2); None when one lies outside."""
     h, w = grey.shape
     corner = np.floor(pixels).astype(np.int64)

@@ -66,7 +66,7 @@ class MassSpringBody:
     everybody: Active
     limbs: dict[str, Active]
 
-    def sized(self, shape: BodyShape) -> "MassSpringBody":
+    def with_shape(self, shape: BodyShape) -> "MassSpringBody":
         """The same body in another shape, with that one's lengths."""
         return build_body(shape, self.softness)
 

@@ -1,7 +1,7 @@
 """The flexible body in time: states, and the pure functions that lead from one to the next.
 
-One frame of a tracker: `with_head`, `advanced`, then, once the particle filters have spoken, `with_points` and
-`projected` with masses by `confident_masses`.
+One frame of a tracker: `with_head`, `simulate`, then, after the particle filters, `with_points` and
+`project_onto_constraints` with masses by `confident_masses`.
 """
 
 import math
@@ -114,7 +114,7 @@ def with_points(
     return MassSpringState(points, velocities)
 
 
-def advanced(
+def simulate(
     body: MassSpringBody,
     state: MassSpringState,
     dt_s: float,
@@ -141,7 +141,7 @@ def advanced(
     return MassSpringState(points, velocities)
 
 
-def projected(
+def project_onto_constraints(
     body: MassSpringBody,
     state: MassSpringState,
     mass_kg: Floats | None = None,
@@ -183,7 +183,7 @@ def project_limb(
     return out
 
 
-def relaxed(
+def relaxed_state(
     body: MassSpringBody,
     middle_m: Floats,
     facing_rad: float = 0.0,
@@ -209,7 +209,7 @@ def relaxed(
     state = resting(points + head)
     calm = replace(params, damping_per_s=_CALMING_PER_S)
     for _ in range(_CALMING_FRAMES):
-        state = advanced(body, state, 1.0 / 30.0, floor_m=floor_m, params=calm)
+        state = simulate(body, state, 1.0 / 30.0, floor_m=floor_m, params=calm)
     return resting(state.points_m)
 
 

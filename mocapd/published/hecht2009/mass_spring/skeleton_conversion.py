@@ -115,15 +115,15 @@ def points_from_skeleton(body: MassSpringBody, pose: Pose) -> Floats:
     out = np.empty((N_POINTS, 3))
     out[JOINT_POINTS] = joints[JOINTS_OF_POINTS]
 
-    def carried(bone: str, point: int) -> Floats:
+    def rotated(bone: str, point: int) -> Floats:
         j = INDEX[bone]
         offset = body.rest_m[point] - body.skeleton.rest_m[j]
         moved: Floats = joints[j] + rotations.rotate(pose.quats_xyzw[j], offset)
         return moved
 
-    out[HEAD] = carried("head", HEAD)
+    out[HEAD] = rotated("head", HEAD)
     for point in WAIST:
-        out[point] = 0.5 * (carried("spine", point) + carried("chest", point))
+        out[point] = 0.5 * (rotated("spine", point) + rotated("chest", point))
     return out
 
 

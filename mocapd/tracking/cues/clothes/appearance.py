@@ -51,7 +51,7 @@ class AppearanceParams:
     # of the network's odds that a pixel is the person, and the largest cost that they make or spare
     person_weight: float = 0.7
     person_most: float = 3.0
-    least_other_px: float = 50.0  # seen beside the body before it is a class
+    least_other_px: float = 50.0  # of other foreground before it is a class
 
 
 class Appearance:
@@ -71,8 +71,7 @@ class Appearance:
         self._refresh()
 
     def relight(self, gain: Floats) -> None:
-        """Expect the same colours in a light that is so many times as bright, by channel (3,); they give way to what is then
-        seen."""
+        """Moves the histograms to a light of this gain by channel (3,), with less weight against new observations."""
         n = 1 << BITS
         middles = np.arange(n) + 0.5
         to = [np.clip(middles * channel, 0, n - 1).astype(np.int64) for channel in gain]
@@ -102,16 +101,16 @@ class Appearance:
         self._refresh()
 
     def learn(self, picture: Bytes, drawn: Bytes, before: Bytes, ids: Bytes | None = None) -> None:
-        """Count the colours of a picture (h,w,3) where the body is drawn (h,w), as far as it is before the background.
+        """Adds the colours of a picture (h,w,3) where the body is rendered (h,w) and is foreground.
 
-        ids (h,w): what was classified; where it is another region than what is drawn the pose may be wrong, and is not
-        learned from. None: nothing was learned before, and this picture counts in full.
+        ids (h,w): the classified regions; pixels where they differ from the rendered ones are left out, since the pose may
+        be wrong there. None: the first picture, which has full weight.
         """
         classes = np.full(drawn.shape, _UNCOUNTED, np.uint8)
-        seen = before > 0
-        classes[(cv2.dilate(drawn, _BESIDE) == 0) & seen] = 0
+        is_foreground = before > 0
+        classes[(cv2.dilate(drawn, _BESIDE) == 0) & is_foreground] = 0
         lowest, highest = cv2.erode(drawn, _CORE), cv2.dilate(drawn, _CORE)
-        core = (lowest == highest) & (drawn > 0) & seen
+        core = (lowest == highest) & (drawn > 0) & is_foreground
         core &= before < SHADOW if ids is None else ids == drawn
         classes[core] = drawn[core]
         p = self._params
@@ -139,7 +138,7 @@ class Appearance:
         return ids
 
     def _refresh(self) -> None:
-        self.is_learned = bool(self._counts[1:].any())  # whether the body was seen
+        self.is_learned = bool(self._counts[1:].any())
         self._knows_others = bool(self._counts[0].sum() > self._params.least_other_px)
         # bands are counted only until they are joined
         n = len(self._counts) if self._counts[N_CLASSES:].any() else N_CLASSES

@@ -24,7 +24,9 @@ from mocapd.vision.room_background import RoomBackground
 
 T = TypeVar("T")
 
-_OUTLINE_OFFSET = np.ones((13, 13), np.uint8)  # half of it: how far beside an outline is looked
+_OUTLINE_OFFSET = np.ones(
+    (13, 13), np.uint8
+)  # half of it: distance of the pixels that are compared with the outline's
 _OUTLINE_WIDTH = np.ones((3, 3), np.uint8)
 
 
@@ -39,15 +41,17 @@ class CameraView:
         w, h = work_size_px
         self.picture = np.zeros((h, w, 3), np.uint8)
         self.foreground = np.zeros((h, w), np.uint8)
-        self.body = np.zeros((h, w), np.uint8)  # where somebody is or may be, widened
-        self.drawn = np.zeros((h, w), np.uint8)  # where the tracked body is
+        self.body = np.zeros((h, w), np.uint8)  # the body with a margin, or a possible person
+        self.drawn = np.zeros((h, w), np.uint8)  # the tracked body
         self.person_odds = np.zeros(
             (h, w), np.float32
-        )  # logarithms; 0 where the network did not look
+        )  # log-odds of the network; 0 outside its crop
         self.near: Roi | None = None  # the region about it
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
-        self.may_hold_body = False  # the background, learned from a recording with somebody in it
+        self.may_hold_body = (
+            False  # the background, if learned from a recording with a person in it
+        )
         self.body_margin, self.close_margin = (
             np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
         )
@@ -60,8 +64,8 @@ class CameraView:
         self.mark_body(None)
 
     def mark_body(self, drawn: tuple[Roi, Bytes] | None) -> None:
-        """Where the body is now, a region and what is drawn there (h,w), widened, so that it is not learned as background;
-        None: nobody is."""
+        """Marks the body, a region and its rendered ids (h,w), with a margin, so that the background does not learn it;
+        None: no body."""
         self.body[:] = 0
         self.drawn[:] = 0
         self.near = None
@@ -74,7 +78,7 @@ class CameraView:
             self.body[y0:y1, x0:x1] = cv2.dilate(here, self.body_margin)
 
     def mark_person(self, odds: Singles, crop: PersonCrop) -> None:
-        """Where the network sees the person: logarithms of odds (96,96) in a crop of the picture."""
+        """Stores the network's log-odds (96,96) of the person in a crop of the picture."""
         h, w = self.person_odds.shape
         cv2.warpAffine(
             odds, crop.affine, (w, h), dst=self.person_odds, flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
@@ -82,8 +86,8 @@ class CameraView:
         )  # fmt: skip
 
     def learn_background(self, agrees: bool, ticks: int = 1) -> None:
-        """Follow the background where nobody is marked; agrees: who is marked agrees with the picture, so that what was never
-        seen of the background is learned nearer to them."""
+        """Updates the background outside the marked body. agrees: the body fits the picture, so pixels without a background
+        are learned close to it, too."""
         self.background.learn(self.picture, self.body, ticks)
         if agrees and self.near is not None:
             x0, y0, x1, y1 = self.near
@@ -101,8 +105,8 @@ class CameraView:
 
 
 class CameraViews:
-    """All cameras of a fitter, which may be another one from frame to frame; `present` is each seeing camera's own time after
-    the frame set's [s], by its index."""
+    """All cameras of a fitter, which may change from frame to frame. present: each present camera's time offset from the
+    frame set [s], by index."""
 
     def __init__(self, fitter: Fitter, params: ClothesParams) -> None:
         self.fitter, self._params, self._each = fitter, params, fitter.each
@@ -111,7 +115,7 @@ class CameraViews:
             for d in fitter.drawings
         ]
         self._floors = [FloorView(d.camera, d.image_scale) for d in fitter.drawings]
-        # by what stands there: nothing, or anything
+        # of a pixel by its foreground label
         self._weights = np.full(256, int(255 * params.soft), np.uint8)
         self._weights[BACKGROUND] = 255
         self.present: dict[int, float] = {}
@@ -122,7 +126,7 @@ class CameraViews:
             view.reset()
 
     def take(self, pictures: Mapping[int, Bytes], present: dict[int, float]) -> None:
-        """Take work pictures (h,w,3), by camera; present: each seeing camera's own time after the frame set's [s]."""
+        """Stores work pictures (h,w,3) by camera, and `present`."""
         for i, picture in pictures.items():
             self.each[i].picture = picture
             self.each[i].person_odds[:] = 0.0
@@ -155,7 +159,7 @@ class CameraViews:
         return all(self.each[i].appearance.is_learned for i in self.present)
 
     def mark_body(self, state: MotionState | None) -> None:
-        """Where somebody is expected, drawn into every present picture."""
+        """Marks the predicted body in every present picture."""
         self._each(lambda i: self._mark(i, state), self.present)
 
     def _mark(self, i: int, state: MotionState | None) -> None:
@@ -164,7 +168,7 @@ class CameraViews:
         self.each[i].mark_body(drawn)
 
     def update_foreground(self, everywhere: bool = True) -> None:
-        """Renew what stands before each background; not everywhere: about the marked body alone."""
+        """Updates the foreground masks; not everywhere: only about the marked body."""
         self._each(lambda i: self.each[i].update_foreground(everywhere), self.present)
 
     def renew_before(self, searches_everywhere: bool) -> None:
@@ -177,7 +181,7 @@ class CameraViews:
             self._remove_ghosts_of(i)
 
     def remove_ghosts(self) -> None:
-        """Take for background what stands before it by mistake; see `RoomBackground`. The marked body was drawn last."""
+        """Moves ghosts from the foreground to the background; see `RoomBackground`. The marked body was rendered last."""
         self._each(self._remove_ghosts_of, self.present)
 
     def _remove_ghosts_of(self, i: int) -> None:
@@ -230,7 +234,7 @@ class CameraViews:
         return View(i, roi, ids, weights, dt_s)
 
     def silhouettes(self, state: MotionState) -> list[View]:
-        """Every present picture by what stands before the background where somebody of unknown colours is expected."""
+        """The foreground of every present picture about a body without an appearance model."""
         views = []
         for i, dt_s in self.present.items():
             drawing, camera = self.fitter.drawings[i], self.each[i]
@@ -243,7 +247,7 @@ class CameraViews:
         return views
 
     def learn_first_appearance(self, state: MotionState) -> None:
-        """Learn the colours of a body of which none is known yet."""
+        """Learns the first colours of a body."""
         for i, dt_s in self.present.items():
             roi = self.fitter.drawings[i].region(state, dt_s, self._params.margin_px)
             if roi is not None:
@@ -262,7 +266,7 @@ class CameraViews:
         )
 
     def mark_unknown(self) -> None:
-        """What stands before a known background may be somebody."""
+        """Marks the whole foreground as a possible person."""
         for i in self.present:
             camera = self.each[i]
             if not camera.background.is_new:
@@ -273,8 +277,8 @@ class CameraViews:
                 )
 
     def learn(self, state: MotionState | None, views: Sequence[View], ticks: int = 1) -> None:
-        """Learn the colours of a body that agrees with what was classified in these views, and follow each background where
-        nobody is marked; not while somebody who may be a part of it is not found yet. ticks: of 1/30 s, that passed."""
+        """Learns the colours of a body that fits these views, and each background outside the marked body, unless the
+        background may still hold an undetected person. ticks: number of 1/30 s that passed."""
         shows = {view.index: view for view in views}
 
         def learn(i: int) -> None:
@@ -288,7 +292,7 @@ class CameraViews:
         self._each(learn, self.present)
 
     def outline_contrast(self) -> float:
-        """How much steeper the pictures are along the marked body's outline than beside it; about 1 where nobody is."""
+        """Ratio of the image gradient on the marked body's outline to that near it; about 1 without a person there."""
         on_outline = off_outline = 0.0
         for i in self.present:
             camera = self.each[i]
@@ -301,7 +305,7 @@ class CameraViews:
         return on_outline / max(off_outline, 1e-3)
 
     def seed_background(self) -> None:
-        """Take what is beside the marked body for the background."""
+        """Takes everything outside the marked body for the background."""
         for i in self.present:
             camera = self.each[i]
             camera.background.seed(camera.picture, camera.body)
@@ -311,7 +315,7 @@ class CameraViews:
         return tuple(self.each[v.index].name for v in views)
 
     def evidence(self, views: list[View]) -> tuple[Mapping[str, Bytes], Mapping[str, Roi]]:
-        """What was classified, and where in the frames, by camera."""
+        """The classified regions and their places in the frames, by camera."""
         ids = {self.each[v.index].name: v.ids for v in views}
         where = {}
         for v in views:

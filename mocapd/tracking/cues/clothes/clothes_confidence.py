@@ -8,11 +8,11 @@ from mocapd.fit.fit_result import Fit
 from mocapd.tracking.tracking_state import confidence_fade
 from mocapd.types import Floats
 
-_ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) at which a joint is well seen
+_ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) for full confidence
 _HALF_M = 0.10  # an uncertainty that halves it: this tracker's are twice the shirt's
 
 
-def _seen_by() -> dict[str, tuple[int, ...]]:
+def _areas_by_joint() -> dict[str, tuple[int, ...]]:
     """The areas that show each joint."""
     trunk = (Area.TORSO,)
     out: dict[str, tuple[int, ...]] = dict.fromkeys(("hips", "spine", "chest", "upperChest"), trunk)
@@ -34,7 +34,7 @@ def _seen_by() -> dict[str, tuple[int, ...]]:
 
 def _areas_of_joints() -> Floats:
     out = np.zeros((N_JOINTS, N_AREAS))
-    for name, mine in _seen_by().items():
+    for name, mine in _areas_by_joint().items():
         if name in INDEX:
             out[INDEX[name], list(mine)] = 1.0
     return out
@@ -46,8 +46,10 @@ _AREAS = _areas_of_joints()
 def joint_confidence(
     fit: Fit | None, n_cameras: int, uncertainty_m: Floats, away_s: float
 ) -> Floats:
-    """(J,) in 0..1: confirmed share times how much of it is seen, the less the less certain its place is, fading while
-    there is no evidence. uncertainty_m (J,): one standard deviation of each place; away_s: since the last evidence [s]."""
+    """(J,) in 0..1: confirmed share times visible amount, lower for uncertain places, fading without new evidence.
+
+    uncertainty_m (J,): one standard deviation of each place; away_s: since the last evidence [s].
+    """
     if fit is None:
         return np.zeros(N_JOINTS)
     matched = _AREAS @ (fit.matched * fit.in_depth)

@@ -42,58 +42,58 @@ class StartParams:
     # people in sixty simulated sessions up to 0.057, in a real video up to 0.09, of plants and chairs from 0.11
     spread_m: float = 0.1
     farther_per_m: float = (
-        0.08  # of such agreement a person who is a metre farther away must have more
+        0.08  # of such agreement, that a person one metre farther away must have more
     )
-    people: int = 2  # of whom the best is taken
-    longest_s: float = 0.5  # of a look at one frame set, before it goes on at the next
-    walked_m: float = 1.0  # by somebody meanwhile, at most
+    people: int = 2  # candidates that are fitted; the best one is taken
+    longest_s: float = 0.5  # of a search in one frame set, before it continues in the next
+    walked_m: float = 1.0  # by the person during the search, at most
     pause_s: float = 0.2  # between attempts that failed
-    most_rest_s: float = 2.0  # after a step that took longer than that, for as long as it took
+    most_rest_s: float = (
+        2.0  # a slower piece is followed by a pause as long as itself, at most this
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class KeypointStartParams:
     """When keypoints and a silhouette count as a person."""
 
-    least_height_px: int = 16  # of a piece: who lies is low [work px]
-    step_m: float = 0.1  # from one distance that is tried to the next
-    bottom_weight: float = 0.15  # of a piece's lower edge on the floor, beside its middle
+    least_height_px: int = 16  # of a blob: a lying person is low [work px]
+    step_m: float = 0.1  # between the distances that are tried
+    bottom_weight: float = (
+        0.15  # of the error of a blob's lower edge, relative to that of its centre
+    )
     middle_sd_m: float = 0.5  # of the first guess of the hips' place
-    looks: int = 2  # of the network, the second about the pose that came of the first
-    iterations: int = 6  # towards the joints
+    looks: int = 2  # passes of the network, the second about the pose of the first
+    iterations: int = 6  # of the fit to the keypoints alone
     explained: float = 0.62  # of silhouette and body together
     shadows_more: float = 0.08  # with what may be shadow: it lies on the floor before the feet, and draws the body there
     # see KeypointCandidate
     spread_m: float = 0.09  # of people up to 0.07, of chairs from 0.11
     hopeless_m: float = (
-        0.15  # the same, above which nothing is fitted: at the first look the middle may be off
+        0.15  # the same, above which nothing is fitted: the first crop may be off-centre
     )
-    off_sds2: float = 1.3  # of people up to 1.0; of who lies, whom the network does not know, to 4
-    apart_m: float = (
-        0.3  # of people up to 0.25, before cameras beside each other; of a bookshelf from 0.4
+    off_sds2: float = (
+        1.3  # of people up to 1.0; of lying people, which the network has not learned, to 4
     )
-    least_joints: int = 10  # of 15, seen inside each picture
+    apart_m: float = 0.3  # of people up to 0.25, with adjacent cameras; of a bookshelf from 0.4
+    least_joints: int = 10  # of 15, detected inside each picture
     lowest_m: tuple[float, float] = (-0.15, 0.3)  # the lowest joint, above the floor
-    same_place_m: float = 0.4  # between two looks in a row
+    same_place_m: float = 0.4  # between two successive searches
 
 
 @dataclass(frozen=True, slots=True)
 class MotionMonitorParams:
-    """When motion must come from a person who is not found."""
+    """When motion in the foreground counts as an undetected person."""
 
-    least_px: int = 500  # of all that is before the background of a camera, in work pixels
+    least_px: int = 500  # of a camera's foreground [work px]
     most_share: float = 0.6  # of the picture: more is another light
-    moved_px: int = (
-        40  # that are before it now and were not at the look before, or were and are not
-    )
+    moved_px: int = 40  # that changed between background and foreground since the last search
     moved_share: float = (
-        0.03  # the same, of all that is before it: the edge of a chair that was moved flickers less
+        0.03  # the same, of the foreground: the edge of a moved chair flickers less
     )
-    cameras: int = 2  # in which it does
-    lasts_s: float = (
-        2.0  # from the first such look to the last: somebody who walks in is found by then
-    )
-    rest_s: float = 1.5  # without one, and it has ended
+    cameras: int = 2  # that must show it
+    lasts_s: float = 2.0  # of such motion: by then a person entering the room is found
+    rest_s: float = 1.5  # without motion, that ends it
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,7 @@ class ClothesParams:
 
     fit: FitParams = field(default_factory=lambda: FitParams(iterations=6))
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)
-    # colours that are learned confirm less than the shirt's; hands are of the forearm's region
+    # learned colours confirm less than the shirt's; hands belong to the forearm's region
     limbs: LimbSearchParams = field(
         default_factory=lambda: LimbSearchParams(hand_px=0.0, hand_cost=0.0, exchange_turns=4)
     )
@@ -126,37 +126,33 @@ class ClothesParams:
         default_factory=lambda: StereoMatchParams(points=10, leg_points=24)
     )
 
-    margin_px: int = 26  # about the predicted body: as far as its regions are looked for [work px]
-    beside_px: int = 15  # about the body nothing is learned as background
-    close_px: int = 3  # but what was never known as such, beyond that
-    uncovered_s: float = 10 / 30  # from one look for what was uncovered to the next
+    margin_px: int = 26  # about the predicted body, that is classified [work px]
+    beside_px: int = 15  # about the body, that the background does not learn
+    close_px: int = 3  # the same of pixels that have no background yet
+    uncovered_s: float = 10 / 30  # between two searches for ghosts
     absorb_s: float = (
         13 / 30
-    )  # so often what stands before the background is learned, too, while nobody is known
-    soft: float = (
-        60.0 / 255.0
-    )  # weight of a drawn pixel where something else stands before the background
+    )  # interval at which the background learns the foreground, too, while no person is tracked
+    soft: float = 60.0 / 255.0  # weight of a rendered pixel in the foreground of another region
 
     # motion from frame to frame
     velocity: VelocityParams = field(default_factory=VelocityParams)
 
     # decisions
     live_explained: float = (
-        0.45  # share of drawn and seen pixels that agree, for the pose to be believed
+        0.45  # share of rendered and classified pixels that agree, for the pose to be accepted
     )
     least_body_px: int = 300  # confirmed work px, all cameras together
     least_contrast: float = (
-        1.2  # of the outline of a body that is taken over, against what is beside it
+        1.2  # `outline_contrast` of a body from another tracker, to start from it
     )
-    learn_explained: float = 0.45  # of a frame that teaches colours
-    alike: float = 0.55  # share of two regions' colours that is the same, above which they are one
+    learn_explained: float = 0.45  # of a frame set from which colours are learned
+    alike: float = 0.55  # overlap of two regions' colours above which they are merged
 
-    # with the upper body known from another tracker
+    # with trunk and arms from the shirt
     guided_iterations: int = 3
-    guided_joints_s: float = 3 / 30  # from one look for joints to the next
-    guided_look_s: float = (
-        4 / 30
-    )  # from one frame that teaches the look of the clothes to one camera to the next
+    guided_joints_s: float = 3 / 30  # between two keypoint detections
+    guided_look_s: float = 4 / 30  # between two updates of one camera's appearance model
     guided_joint_after_s: float = 1.0  # since the legs were found
     guided_sd_m: float = 0.01
     guided_sd_rad: float = 0.03

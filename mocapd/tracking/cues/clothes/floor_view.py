@@ -1,4 +1,4 @@
-"""Which pixels of a camera see the floor about somebody, where shadows fall."""
+"""Pixels of a camera that show the floor about a person, where shadows fall."""
 
 import numpy as np
 
@@ -28,7 +28,7 @@ class FloorView:
         )
 
     def near(self, root_m: Floats, roi: Roi) -> Bytes:
-        """(h,w) of the region: 1 where the floor about a body with this root (3,) is seen, if nothing stands before it."""
+        """(h,w) of the region: 1 where an empty room would show the floor about a body with this root (3,)."""
         x0, y0, x1, y1 = roi
         near = np.empty((y1 - y0, x1 - x0), np.uint8)
         near_on_floor(self._met_x, self._met_z, x0, y0, root_m[0], root_m[2], _REACH_M, near)

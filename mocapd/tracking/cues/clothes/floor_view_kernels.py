@@ -1,4 +1,4 @@
-"""Which pixels see the floor about somebody."""
+"""Kernel: pixels that show the floor about a person."""
 
 import numpy as np
 from numba import njit

@@ -1,4 +1,4 @@
-"""What holds a pose beside the regions of the pictures: the floor, distances, and joints that were seen."""
+"""Terms of a fit besides the classified regions: the floor, stereo distances and keypoints."""
 
 from collections.abc import Collection, Sequence
 

@@ -19,12 +19,10 @@ from mocapd.tracking.cues.clothes.appearance import Appearance
 from mocapd.tracking.cues.clothes.regions import Band, Region, merged_labels
 from mocapd.types import Camera
 
-RegionMerge = tuple[
-    int, ...
-]  # by region 0..: the region whose colours it shares, itself where it has its own
+RegionMerge = tuple[int, ...]  # for region 0..: the region that it is merged with, or itself
 
 NO_MERGE: RegionMerge = (0, *(int(part) for part in (*Region, *Band)))
-# the look that somebody is found with, and of those who come in turn; each has some 5 MB of buffers
+# the merge of a new track and those of recent people; each has some 5 MB of buffers
 _CACHE_SIZE = 4
 _MAY_BE_ONE = (
     (Region.HAND, Region.FOREARM),

@@ -29,7 +29,7 @@ class Region(IntEnum):
     LEG = 4
     FOOT = 5
     HAND = 6
-    HAIR = 7  # the head but for its face: which of them shows tells which way somebody looks
+    HAIR = 7  # the head without its face: which of the two is visible shows the facing direction
 
 
 class Band(IntEnum):
@@ -51,14 +51,14 @@ def region_labels(model: BodyModel) -> SurfaceLabels:
 
 
 def silhouette_labels(model: BodyModel) -> SurfaceLabels:
-    """Of a whole body as it is seen before its background: one. Raises ValueError as `merged_labels`."""
+    """One label for the whole body. Raises ValueError as `merged_labels`."""
     return merged_labels(model, np.ones(1 + max(Band), np.uint8))
 
 
 def merged_labels(model: BodyModel, worn: Sequence[int] | NDArray[np.uint8]) -> SurfaceLabels:
     """Of a whole body: that of each region or band, by its number. Raises ValueError for a body without legs of its own."""
     if not model.space.whole:
-        raise ValueError("a body of the upper pose space has no legs to be told apart")
+        raise ValueError("a body of the upper pose space has no legs")
     return surface_labels(model, np.asarray(worn, np.uint8)[regions(model)], _areas(model))
 
 
@@ -94,7 +94,7 @@ def regions(model: BodyModel) -> NDArray[np.uint8]:
 
 
 def _areas(model: BodyModel) -> NDArray[np.uint8]:
-    """The `Area` (T,) of each triangle of a whole body whose trunk is one; hands count as wrists."""
+    """The `Area` (T,) of each triangle of a whole body, with an undivided trunk; hands count as wrists."""
     out = np.full(len(model.triangles), Area.TORSO, np.uint8)
     out[model.part == HEAD] = Area.HEAD
     main = model.triangle_bones[:, 0]

@@ -32,7 +32,9 @@ class FaceOrientationParams:
     """When a face is looked for, and what it tells."""
 
     every_s: float = 2 / 30  # from one look to the next; each at another camera
-    away_rad: float = 2.4  # from a camera, that a chest faces: an ear seen from 2.1 is taken for a face now and then
+    away_rad: float = (
+        2.4  # from a camera, that a chest faces: an ear at 2.1 is sometimes detected as a face
+    )
     windows: int = 2  # that agree on a face
     rate: float = 0.5  # of looks at frontal faces that find them
     false_rate: float = 0.02  # of looks at other things that find one
@@ -113,7 +115,7 @@ class FaceOrientation:
 
 
 def _away_rad(global_xyzw: Floats, camera: Camera, at_m: Floats) -> float:
-    """Between where a bone (4,) faces and where the camera is, seen from above."""
+    """Horizontal angle between the direction that a bone (4,) faces and that to the camera."""
     forward, eye = rotations.rotate(global_xyzw, _FORWARD), centre(camera) - at_m
     angle = np.arctan2(forward[0], forward[2]) - np.arctan2(eye[0], eye[2])
     return float(abs((angle + np.pi) % (2.0 * np.pi) - np.pi))

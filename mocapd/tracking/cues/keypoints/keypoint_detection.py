@@ -27,7 +27,7 @@ from mocapd.vision.heatmaps.person_crop import PersonCrop, crop_about, middle_of
 _JOINTS = np.array([INDEX[name] for name in JOINTS])
 _HIPS, _NECK = INDEX["hips"], INDEX["neck"]
 _NEAREST_M = 0.5
-_ITERATIONS = 5  # of undistortion: no joint is known to a thousandth of a pixel
+_ITERATIONS = 5  # of undistortion: no keypoint is accurate to a thousandth of a pixel
 _CELL_PX = INPUT_PX / CELLS
 _GREY = (127.5, 127.5, 127.5)
 
@@ -101,16 +101,16 @@ class KeypointDetectors:
 
 
 def _cut_out(view: CameraView, crop: PersonCrop) -> tuple[Bytes, Singles, Bytes]:
-    """The picture, the background, and where that is known."""
+    """Crops of the picture, of the background and of its mask of learned pixels."""
     M, size = crop.affine, (INPUT_PX, INPUT_PX)
-    room, known_mask = view.background.empty_room()
+    room, learned_mask = view.background.empty_room()
     picture = cv2.warpAffine(view.picture, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
     background = cv2.warpAffine(room, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
-    is_known = cv2.warpAffine(known_mask, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))
+    is_learned = cv2.warpAffine(learned_mask, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))
     return (
         np.asarray(picture, np.uint8),
         np.asarray(background, np.float32),
-        np.asarray(is_known, np.uint8),
+        np.asarray(is_learned, np.uint8),
     )
 
 

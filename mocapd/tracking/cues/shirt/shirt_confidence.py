@@ -9,17 +9,17 @@ from mocapd.fit.fit_result import Fit
 from mocapd.tracking.tracking_state import FADE_S
 from mocapd.types import Floats
 
-_ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) at which a joint is well seen
-# An uncertainty that halves it. At 0.05 errors of two cameras are told a little better, and what one camera sees falls
-# below all that clients believe; at 0.10 every third joint that is 10 cm off is believed in full.
+_ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) for full confidence
+# uncertainty that halves it: 0.05 ranks errors of two cameras a little better, but puts every joint of a single camera
+# below the clients' thresholds; 0.10 gives full confidence to every third joint that is 10 cm off
 _HALF_M = 0.06
-_HEAD = 0.5  # what the shirt tells of it, of the neck's
+_HEAD = 0.5  # share of the neck's
 
 _UPPER_TORSO = tuple(patch for patch in TORSO_QUARTERS if "UPPER" in patch.name)
 _LOWER_TORSO = tuple(patch for patch in TORSO_QUARTERS if "LOWER" in patch.name)
 
 
-def _seen_by() -> dict[str, tuple[Area, ...]]:
+def _patches_by_joint() -> dict[str, tuple[Area, ...]]:
     """The patches that show each joint."""
     out = {
         "hips": _LOWER_TORSO, "spine": TORSO_QUARTERS, "chest": TORSO_QUARTERS,
@@ -37,7 +37,7 @@ def _seen_by() -> dict[str, tuple[Area, ...]]:
 
 def _patches_of_joints() -> Floats:
     out = np.zeros((N_JOINTS, N_AREAS))
-    for name, patches in _seen_by().items():
+    for name, patches in _patches_by_joint().items():
         out[INDEX[name], list(patches)] = 1.0
     return out
 
@@ -48,11 +48,10 @@ _PATCHES = _patches_of_joints()
 def joint_confidence(
     fit: Fit | None, n_cameras: int, uncertainty_m: Floats, away_s: float
 ) -> Floats:
-    """(J,) in 0..1: confirmed share times how much of it is seen, the less the less certain its place is, fading while
-    there is no evidence.
+    """(J,) in 0..1: confirmed share times visible amount, lower for uncertain places, fading without new evidence.
 
-    A hidden arm is near 0, whatever pose the prior gives it; what one camera sees loses by its depth. The head follows
-    the neck; of the legs the shirt tells nothing, which is 0. uncertainty_m (J,):
+    A hidden arm is near 0, whatever pose the prior gives it; a single camera costs confidence by its uncertain depth. The
+    head follows the neck; legs are 0. uncertainty_m (J,):
     one standard deviation of each place; away_s: since the last evidence [s].
     """
     if fit is None:

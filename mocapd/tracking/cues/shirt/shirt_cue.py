@@ -280,7 +280,7 @@ class ShirtCue:
         )
 
     def learn(self, found: ShirtEstimate | None, present: dict[int, float], is_lost: bool) -> None:
-        """Updates light and colours from the fit, and the cue's own backgrounds beside it. is_lost: no body is tracked."""
+        """Updates light and colours from the fit, and the cue's own backgrounds outside it. is_lost: no body is tracked."""
         every = 1 if found is None else self.work.learning
         if not self._ticks.due(every * TICK_S):
             return

@@ -1,4 +1,4 @@
-"""The numbers of the shirt cue's own decisions, and those of its parts, with units and reasons."""
+"""Parameters of the shirt cue and its parts, with units and reasons."""
 
 from dataclasses import dataclass, field
 
@@ -10,17 +10,17 @@ from mocapd.tracking.velocity import VelocityParams
 
 @dataclass(frozen=True, slots=True)
 class ShapeLearningParams:
-    """When the proportions are learned while tracking, and how fast."""
+    """When and how fast the body shape is learned while tracking."""
 
     learn: bool = True
-    gain: float = 0.6  # share of a frame's information kept: errors last over frames
+    gain: float = 0.6  # weight of a frame's information: errors of successive frames are correlated
     learning_s: float = 6.0  # proportions settle over the first seconds of good tracking
-    least_match: float = 0.7  # agreement of a frame that teaches
+    least_match: float = 0.7  # match of a frame from which it is learned
 
 
 @dataclass(frozen=True, slots=True)
 class ShirtParams:
-    """Parameters of the full tracker: its parts', and what it decides itself."""
+    """Parameters of the shirt cue."""
 
     fit: FitParams = field(default_factory=FitParams)
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)
@@ -39,13 +39,13 @@ class ShirtParams:
     accept_colours: int = 5  # colours that must be confirmed to accept a new pose
     min_shirt_px: int = 120  # confirmed work px, all cameras together
     uncertain_match: float = (
-        0.6  # under this agreement the shirt is looked for anew beside tracking
+        0.6  # a lower match starts a search of all pictures while tracking goes on
     )
-    uncertain_pause_s: float = 0.4  # between such looks
-    uncertain_gain: float = 0.05  # by how much the agreement must be better to change over
-    search_pause_s: float = 0.1  # between attempts that failed, while nobody is known
-    covered_pause_s: float = 0.2  # between looks at a body that clothes carry
+    uncertain_pause_s: float = 0.4  # between such searches
+    uncertain_gain: float = 0.05  # by which the match must be better to replace the track
+    search_pause_s: float = 0.1  # between attempts that failed, while no person is tracked
+    covered_pause_s: float = 0.2  # between searches on a body that clothes place
     near_m: float = (
-        0.3  # trunks nearer than this are of one body: cloth, shape and lag together stay below it
+        0.3  # trunks nearer than this are one body: errors of cloth, shape and lag stay below it
     )
     neighbours: int = 6  # of the pose database, per camera

@@ -70,9 +70,11 @@ def hypotheses(
     """
     place: Floats | None = None
     if len(sightings) > 1:
-        seen_by = [cameras[s.index] for s in sightings]
-        xy = np.array([normalised(c, s.centre_px) for c, s in zip(seen_by, sightings, strict=True)])
-        point, residual_m = triangulate(seen_by, xy)
+        sighting_cameras = [cameras[s.index] for s in sightings]
+        xy = np.array(
+            [normalised(c, s.centre_px) for c, s in zip(sighting_cameras, sightings, strict=True)]
+        )
+        point, residual_m = triangulate(sighting_cameras, xy)
         if np.isfinite(point).all() and np.max(residual_m) < _APART_M:
             place = point
     out = []

@@ -1,4 +1,4 @@
-"""What two cameras beside each other see of a person, with its depth, and without what is far behind."""
+"""Adds stereo depth of two adjacent cameras to their views, and removes pixels far behind the person."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -23,10 +23,10 @@ def add_stereo_depth(
     frames: FrameSet,
     params: StereoDepthParams,
 ) -> list[View]:
-    """The views, of which the first knows depths, where cameras look from one side; as they are where not.
+    """The views, with depths in the first one, for two cameras with a small baseline; unchanged otherwise.
 
-    predicted: a body that the fitter drew last into every view. What is classified beside it, and stands far behind it (a
-    passer-by, what was uncovered of the room), is not of it.
+    predicted: a body that the fitter rendered last into every view. Pixels classified outside it and far behind it (a
+    passer-by, a ghost) are removed from its regions.
     """
     if len(views) != 2 or not fitter.has_small_baseline(predicted, views):
         return list(views)
@@ -37,9 +37,9 @@ def add_stereo_depth(
         pair = StereoPair(
             drawing.camera, fitter.drawings[views[its].index].camera, (greys[mine], greys[its]), drawing.image_scale
         )  # fmt: skip
-        beside = (view.ids > 0) & (drawing.last(view.roi)[0] == 0)
+        outside = (view.ids > 0) & (drawing.last(view.roi)[0] == 0)
         far_m = stereo_depth_m(
-            beside, view.roi, pair, predicted.root_m, params.room_m, params, fitter.each
+            outside, view.roi, pair, predicted.root_m, params.room_m, params, fitter.each
         )
         away_m = float(np.linalg.norm(predicted.root_m - centre(drawing.camera)))
         behind = far_m > away_m + params.behind_m

@@ -55,7 +55,7 @@ def learned(
 
 
 def test_the_cloths_colours_are_found_through_noise() -> None:
-    model = AppearanceModel.unknown(1, len(ENDS_M))
+    model = AppearanceModel.initial(1, len(ENDS_M))
     for i in range(10):
         model = learned(model, clothed(i, 25.0))
     assert model.colour[0, FOREARM, :4] == pytest.approx(
@@ -68,8 +68,8 @@ def test_the_cloths_colours_are_found_through_noise() -> None:
 
 def test_what_the_mask_leaves_out_is_not_learned() -> None:
     mask = np.zeros_like(EVERYWHERE)
-    model = learned(AppearanceModel.unknown(1, len(ENDS_M)), clothed(0), mask)
-    assert not model.seen_s.any()
+    model = learned(AppearanceModel.initial(1, len(ENDS_M)), clothed(0), mask)
+    assert not model.visible_s.any()
     assert np.isnan(reference_colours(model, 10)).all()
 
 
@@ -87,35 +87,35 @@ def test_a_part_behind_another_is_not_learned_from_it() -> None:
 def test_rings_near_an_unsure_end_learn_less() -> None:
     confidence = SURE.copy()
     confidence[FOREARM] = [1.0, 0.0]
-    model = learned(AppearanceModel.unknown(1, len(ENDS_M)), clothed(0), confidence=confidence)
-    seen_s = model.seen_s[0, FOREARM]
-    assert (np.diff(seen_s) < 0.0).all()
-    assert seen_s == pytest.approx(0.1 * (1.0 - (np.arange(10) + 0.5) / 10))
+    model = learned(AppearanceModel.initial(1, len(ENDS_M)), clothed(0), confidence=confidence)
+    visible_s = model.visible_s[0, FOREARM]
+    assert (np.diff(visible_s) < 0.0).all()
+    assert visible_s == pytest.approx(0.1 * (1.0 - (np.arange(10) + 0.5) / 10))
 
 
 def test_it_is_a_running_average_and_then_fixed() -> None:
-    model = AppearanceModel.unknown(1, len(ENDS_M))
+    model = AppearanceModel.initial(1, len(ENDS_M))
     grey = np.full((*EVERYWHERE.shape, 3), 80, np.uint8)
     model = learned(learned(model, grey, dt_s=0.1), grey * 2, dt_s=0.3)
     assert model.colour[0, SHIN] == pytest.approx(np.full((10, 3), 140.0), abs=0.01)
     assert not model.is_fixed(PARAMS)
     for _ in range(30):
         model = learned(model, grey)
-    assert (model.seen_s[0, SHIN] >= PARAMS.enough_s).all()
+    assert (model.visible_s[0, SHIN] >= PARAMS.enough_s).all()
     before = model.colour[0, SHIN].copy()
     assert (learned(model, grey * 3).colour[0, SHIN] == before).all()
 
 
 def test_one_cameras_colours_are_not_anothers() -> None:
-    model = learned(AppearanceModel.unknown(2, len(ENDS_M)), clothed(0))
-    assert model.seen_s[0].any()
-    assert not model.seen_s[1].any()
+    model = learned(AppearanceModel.initial(2, len(ENDS_M)), clothed(0))
+    assert model.visible_s[0].any()
+    assert not model.visible_s[1].any()
 
 
 def test_reference_colours_run_from_ring_to_ring_and_over_gaps() -> None:
-    model = AppearanceModel.unknown(1, 1)
+    model = AppearanceModel.initial(1, 1)
     model.colour[0, 0] = np.arange(10.0)[:, None]
-    model.seen_s[0, 0, [2, 6]] = 0.5
+    model.visible_s[0, 0, [2, 6]] = 0.5
     got = reference_colours(model, 20)[0, 0, :, 0]
     assert got[:4] == pytest.approx(2.0)
     assert got[-6:] == pytest.approx(6.0)

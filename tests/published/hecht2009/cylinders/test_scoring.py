@@ -71,7 +71,7 @@ def test_penalties_are_those_of_the_naive_twin(params: LimbScoreParams) -> None:
     for n, limb in enumerate(points):
         mean, seen = naive_penalties(of, limb, LEFT_ARM, body, view, params)
         assert got.mean[0, n] == pytest.approx(mean, abs=1e-5)
-        assert got.seen[0, n] == pytest.approx(seen, abs=1e-9)
+        assert got.visible[0, n] == pytest.approx(seen, abs=1e-9)
 
 
 def test_a_perfect_picture_costs_nothing_and_its_opposite_most() -> None:
@@ -141,7 +141,7 @@ def test_a_hidden_limb_lies_between_a_good_and_a_bad_one() -> None:
 
 def test_switches_leave_out_what_they_name() -> None:
     view, _ = view_of(camera())
-    usual = UsualPenalties.unknown(1, PARAMS)
+    usual = UsualPenalties.initial(1, PARAMS)
     points = particles(30, 0.1) + [0.0, 0.0, -0.3]
 
     def scores(params: LimbScoreParams, view: LimbView = view) -> Floats:
@@ -160,7 +160,7 @@ def test_switches_leave_out_what_they_name() -> None:
 
 def test_what_is_usual_is_the_mean_at_first_and_waits_while_the_limb_is_hidden() -> None:
     views = [view_of(camera())[0]]
-    usual = UsualPenalties.unknown(1, PARAMS)
+    usual = UsualPenalties.initial(1, PARAMS)
     half = np.array([0.5, 0.5])
 
     def looked(usual: UsualPenalties, penalty: float, seen: float) -> UsualPenalties:

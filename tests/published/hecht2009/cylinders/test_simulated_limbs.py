@@ -111,7 +111,7 @@ def seen(t_s: float, camera: int, ends_m: Floats) -> tuple[LimbView, Floats, Flo
 @cache
 def reference() -> tuple[np.ndarray, ...]:
     """The colours of both cameras, learned in the first seconds."""
-    model, params = AppearanceModel.unknown(2, len(RADII_M)), LimbAppearanceParams()
+    model, params = AppearanceModel.initial(2, len(RADII_M)), LimbAppearanceParams()
     for t_s in LEARNED_S:
         for camera in (0, 1):
             view, quads, depths = seen(t_s, camera, body_ends(t_s))
@@ -150,7 +150,7 @@ def test_the_true_pose_scores_higher_than_poses_beside_it(
     params: LimbScoreParams, by_m: float, least: float
 ) -> None:
     rng = np.random.default_rng(1)
-    usual = UsualPenalties.unknown(2, params)
+    usual = UsualPenalties.initial(2, params)
     higher = []
     for t_s in TRIED_S:
         views = views_at(t_s, body_ends(t_s))
@@ -171,7 +171,7 @@ def test_colours_of_another_arm_are_worse() -> None:
         for view in views
     ]
     arm = limb(t_s, "left")[None]
-    usual = UsualPenalties.unknown(2, SCORE)
+    usual = UsualPenalties.initial(2, SCORE)
     own, other = (
         score_limbs(arm, RADII_M[list(parts)], parts, of, usual, SCORE)[0]
         for of in (views, swapped)

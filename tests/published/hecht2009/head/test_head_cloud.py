@@ -12,16 +12,16 @@ from mocapd.published.hecht2009.head.head_cloud import (
     at_distance,
     cloud_about,
     cloud_at,
+    fuse,
     is_far,
     moments,
     observations,
-    predicted,
-    proposed,
-    resampled,
-    updated,
+    predict,
+    propose,
+    resample,
     weights,
 )
-from mocapd.published.hecht2009.head.head_colours import learned, light_gain, unknown_colours
+from mocapd.published.hecht2009.head.head_colours import initial_colours, light_gain, update_colours
 from mocapd.published.hecht2009.head.head_params import HeadParams
 from mocapd.published.hecht2009.head.head_particle_kernels import score_heads, score_observations
 from mocapd.published.hecht2009.head.head_samples import INSIDE, OUTLINE
@@ -41,7 +41,7 @@ def cloud(sd_m: float = 0.03, seed: int = 0) -> Cloud:
 @settings(max_examples=20)
 def test_a_cloud_moves_with_its_velocity_and_spreads(dt_s: float) -> None:
     before = Cloud(cloud().place_m, np.tile([1.0, 0.0, -0.5], (4000, 1)))
-    after = predicted(before, dt_s, MANY, np.random.default_rng(1))
+    after = predict(before, dt_s, MANY, np.random.default_rng(1))
     moved = after.place_m.mean(axis=0) - before.place_m.mean(axis=0)
     assert np.allclose(moved, dt_s * np.array([1.0, 0.0, -0.5]), atol=0.003 + 0.1 * dt_s**2 * 8)
     assert (after.place_m.std(axis=0) > before.place_m.std(axis=0)).all()
@@ -55,7 +55,7 @@ def test_two_rays_that_cross_and_one_distance_each_say_where_the_head_is() -> No
     one = eyes[0], rays[0]
     placed = observations([along_ray(*one, 0.01), at_distance(*one, away_m, 0.01)])
     for seen in (crossing, placed):
-        mean, covariance = updated(MIDDLE + 0.2, np.eye(3), seen)
+        mean, covariance = fuse(MIDDLE + 0.2, np.eye(3), seen)
         assert np.allclose(mean, MIDDLE, atol=0.002)
         assert np.sqrt(np.linalg.eigvalsh(covariance).max()) < 0.03
 
@@ -72,7 +72,7 @@ def test_particles_drawn_at_the_measurements_stand_for_the_same_cloud(
     seen = observations([along_ray(eye, ray, 0.03)])
     rng = np.random.default_rng(seed)
     before = cloud(0.04, seed)
-    after, log_weight = proposed(before, seen, MANY, rng)
+    after, log_weight = propose(before, seen, MANY, rng)
     assert not np.array_equal(after.place_m, before.place_m)
     mean, covariance = moments(after.place_m, weights(log_weight))
     assert np.allclose(mean, MIDDLE, atol=0.006)
@@ -82,7 +82,7 @@ def test_particles_drawn_at_the_measurements_stand_for_the_same_cloud(
 def test_resampling_keeps_particles_in_proportion_to_their_weight() -> None:
     before = Cloud(np.arange(12.0).reshape(4, 3), np.zeros((4, 3)))
     weight = np.array([0.5, 0.25, 0.25, 0.0])
-    kept = resampled(before, weight, np.random.default_rng(0)).place_m[:, 0]
+    kept = resample(before, weight, np.random.default_rng(0)).place_m[:, 0]
     assert sorted(kept.tolist()) == [0.0, 0.0, 3.0, 6.0]
 
 
@@ -110,7 +110,7 @@ def test_the_place_of_a_head_scores_best_by_its_colours(yaw_rad: float) -> None:
     pixels = picture(of, (ball,))
     outline = ellipse_of(of, ball.middle_m, size)
     assert outline is not None
-    colours = learned(unknown_colours(), pixels, outline, True, 0.0)
+    colours = update_colours(initial_colours(), pixels, outline, True, 0.0)
     gain = light_gain(pixels, outline)
     steps = np.linspace(-0.15, 0.15, 13)
     for axis in np.eye(3)[:2]:

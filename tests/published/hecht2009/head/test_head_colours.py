@@ -6,12 +6,12 @@ import pytest
 from mocapd.published.hecht2009.head.head_colour_kernels import colour_bin
 from mocapd.published.hecht2009.head.head_colours import (
     HeadEllipse,
-    are_known,
     face_side,
-    learned,
+    has_colours,
+    initial_colours,
     light_gain,
     skin_pixels,
-    unknown_colours,
+    update_colours,
 )
 from mocapd.types import Bytes
 
@@ -38,7 +38,7 @@ def person(skin: tuple[int, int, int], light: float = 1.0, turned: float = 0.0) 
 @pytest.mark.parametrize("skin", SKINS)
 def test_skin_is_told_from_room_and_shirt_whatever_its_colour(skin: tuple[int, int, int]) -> None:
     picture = person(skin)
-    colours = learned(unknown_colours(), picture, OUTLINE, True, 1 / 30)
+    colours = update_colours(initial_colours(), picture, OUTLINE, True, 1 / 30)
     marked = skin_pixels(colours, picture) > 0
     assert marked[60:75, 70:90].mean() > 0.95
     assert marked[20:90, :40].mean() < 0.05
@@ -47,7 +47,7 @@ def test_skin_is_told_from_room_and_shirt_whatever_its_colour(skin: tuple[int, i
 
 @pytest.mark.parametrize("light", [0.6, 1.3])
 def test_a_head_is_told_from_the_room_when_the_light_has_changed(light: float) -> None:
-    colours = learned(unknown_colours(), person(SKINS[0]), OUTLINE, True, 1 / 30)
+    colours = update_colours(initial_colours(), person(SKINS[0]), OUTLINE, True, 1 / 30)
     later = person(SKINS[0], light)
     gain = light_gain(later, OUTLINE)
 
@@ -64,16 +64,16 @@ def test_a_head_is_told_from_the_room_when_the_light_has_changed(light: float) -
 
 def test_nothing_is_skin_before_a_face_was_seen() -> None:
     picture = person(SKINS[0])
-    assert not are_known(unknown_colours())
-    assert not skin_pixels(unknown_colours(), picture).any()
-    assert face_side(unknown_colours(), picture, OUTLINE) is None
-    without_face = learned(unknown_colours(), picture, OUTLINE, False, 1 / 30)
-    assert are_known(without_face)
+    assert not has_colours(initial_colours())
+    assert not skin_pixels(initial_colours(), picture).any()
+    assert face_side(initial_colours(), picture, OUTLINE) is None
+    without_face = update_colours(initial_colours(), picture, OUTLINE, False, 1 / 30)
+    assert has_colours(without_face)
     assert not skin_pixels(without_face, picture).any()
 
 
 def test_the_skin_of_a_turned_head_lies_to_the_side_that_it_looks_to() -> None:
-    colours = learned(unknown_colours(), person(SKINS[0]), OUTLINE, True, 1 / 30)
+    colours = update_colours(initial_colours(), person(SKINS[0]), OUTLINE, True, 1 / 30)
     sides = []
     for turned in (-0.6, 0.0, 0.6):
         seen = face_side(colours, person(SKINS[0], turned=turned), OUTLINE)
@@ -84,9 +84,9 @@ def test_the_skin_of_a_turned_head_lies_to_the_side_that_it_looks_to() -> None:
 
 
 def test_what_was_learned_fades_as_time_passes() -> None:
-    colours = learned(unknown_colours(), person(SKINS[0]), OUTLINE, True, 0.0)
+    colours = update_colours(initial_colours(), person(SKINS[0]), OUTLINE, True, 0.0)
     other = person(SKINS[1])
-    soon, late = (learned(colours, other, OUTLINE, True, dt_s) for dt_s in (0.01, 20.0))
+    soon, late = (update_colours(colours, other, OUTLINE, True, dt_s) for dt_s in (0.01, 20.0))
     b, g, r = other[70, 80].tolist()
     at = colour_bin(b, g, r, light_gain(other, OUTLINE))
     assert late.head[at] / late.head.sum() > soon.head[at] / soon.head.sum() > 0.0
@@ -94,7 +94,7 @@ def test_what_was_learned_fades_as_time_passes() -> None:
 
 def test_a_head_at_the_edge_of_the_picture_is_learned_from_what_is_seen() -> None:
     outline = HeadEllipse(np.array([-5.0, 2.0, 20.0, 27.0]), np.array([0.0, -1.0]))
-    assert np.isfinite(learned(unknown_colours(), person(SKINS[0]), outline, True, 0.1).head_odds).all()  # fmt: skip
+    assert np.isfinite(update_colours(initial_colours(), person(SKINS[0]), outline, True, 0.1).head_odds).all()  # fmt: skip
     beyond = HeadEllipse(np.array([-500.0, 2.0, 20.0, 27.0]), np.array([0.0, -1.0]))
     assert light_gain(person(SKINS[0]), beyond) == 1.0
-    assert not are_known(learned(unknown_colours(), person(SKINS[0]), beyond, True, 0.1))
+    assert not has_colours(update_colours(initial_colours(), person(SKINS[0]), beyond, True, 0.1))

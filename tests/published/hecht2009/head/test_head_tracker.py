@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.head_proportions import MIDDLE
-from mocapd.published.hecht2009.head.head_shape import face_of, joint_of, turned
+from mocapd.published.hecht2009.head.head_shape import face_of, joint_of, yaw_rotation
 from mocapd.published.hecht2009.head.head_track import (
     HeadPicture,
     HeadState,
@@ -258,4 +258,4 @@ def test_joint_and_face_are_where_the_skeleton_has_them() -> None:
     # one who looks to the own left looks along +X
     assert face_of(middle, 2.0, 0.5 * np.pi)[0] > 0.1
     assert np.allclose(joint_of(middle, 2.0, None), middle - (0.0, 2.0 * MIDDLE[1], 0.0))
-    assert np.allclose(turned(0.5 * np.pi) @ (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+    assert np.allclose(yaw_rotation(0.5 * np.pi) @ (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))

@@ -13,8 +13,8 @@ from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
 from mocapd.published.hecht2009.mass_spring.simulation import (
     SimulationParams,
     project_limb,
-    projected,
-    relaxed,
+    project_onto_constraints,
+    relaxed_state,
     resting,
 )
 from mocapd.types import Floats
@@ -34,7 +34,7 @@ quick = settings(max_examples=25, deadline=None)
 @cache  # not at import, where each of several processes would compile what it takes
 def points_m() -> Floats:
     """Of the body at rest; nobody may change them."""
-    return relaxed(BODY, np.array([0.0, 1.63, 0.0])).points_m
+    return relaxed_state(BODY, np.array([0.0, 1.63, 0.0])).points_m
 
 
 def cloud(limb: str, seed: int, spread_m: float, n: int = 20) -> Floats:
@@ -63,7 +63,7 @@ def test_all_particles_at_once_are_each_one_alone_with_the_whole_body_held(
         one = project_limb(BODY, limb, before[None], points_m(), sweeps=8)[0]
         assert (one == after).all()
         # all constraints of the body, but nothing else may move
-        whole = projected(
+        whole = project_onto_constraints(
             BODY, resting(with_limb(limb, before)), mass,
             params=SimulationParams(projection_sweeps=8),
         ).points_m  # fmt: skip
@@ -71,7 +71,9 @@ def test_all_particles_at_once_are_each_one_alone_with_the_whole_body_held(
         assert (whole[others] == points_m()[others]).all()
         # the same constraints; the limits come twice as often for particles
         many = SimulationParams(projection_sweeps=400)
-        far = projected(BODY, resting(with_limb(limb, before)), mass, params=many).points_m
+        far = project_onto_constraints(
+            BODY, resting(with_limb(limb, before)), mass, params=many
+        ).points_m
         settled = project_limb(BODY, limb, before[None], points_m(), sweeps=400)[0]
         if np.abs(far[which] - before).max() < 0.05:
             assert np.abs(far[which] - settled).max() < 0.02

@@ -28,12 +28,12 @@ from mocapd.published.hecht2009.mass_spring.mass_spring_body import (
 from mocapd.published.hecht2009.mass_spring.simulation import (
     MassSpringState,
     SimulationParams,
-    advanced,
     confident_masses,
     head_middle,
-    projected,
-    relaxed,
+    project_onto_constraints,
+    relaxed_state,
     resting,
+    simulate,
     with_head,
     with_points,
 )
@@ -61,7 +61,7 @@ quick = settings(max_examples=25, deadline=None)
 @cache  # not at import, where each of several processes would compile what it takes
 def at_rest(name: str) -> MassSpringState:
     """The body of this name in BODIES, its middle at MIDDLE_M; nobody may change it."""
-    return relaxed(BODIES[name], MIDDLE_M)
+    return relaxed_state(BODIES[name], MIDDLE_M)
 
 
 def strain_m(body: MassSpringBody, points: Floats) -> Floats:
@@ -98,7 +98,7 @@ def test_no_impulse_breaks_it(name: str, seed: int, dt_s: float) -> None:
     body, start = BODIES[name], at_rest(name)
     state = MassSpringState(start.points_m, impulse(seed))
     for _ in range(15):
-        state = advanced(body, state, dt_s)
+        state = simulate(body, state, dt_s)
         assert_valid(body, state.points_m, TRUNK_GIVE_M[name])
         assert (state.points_m[HEAD] == start.points_m[HEAD]).all()
     assert np.linalg.norm(state.velocities_m_s, axis=1).max() <= SimulationParams().most_m_s + 1e-9
@@ -107,7 +107,7 @@ def test_no_impulse_breaks_it(name: str, seed: int, dt_s: float) -> None:
 def test_a_far_correction_is_no_motion() -> None:
     start = at_rest("stiff")
     torn = with_points(start, [WRIST[0]], start.points_m[[WRIST[0]]] + [0.9, 0.3, 0.4])
-    after = advanced(BODY, torn, SimulationParams().step_s)
+    after = simulate(BODY, torn, SimulationParams().step_s)
     assert np.linalg.norm(after.points_m - torn.points_m, axis=1).max() > 0.3
     speeds = np.linalg.norm(after.velocities_m_s, axis=1)
     assert speeds.max() <= SimulationParams().most_m_s + 1e-9
@@ -120,7 +120,7 @@ def test_a_far_correction_is_no_motion() -> None:
 def test_it_comes_to_rest_again(name: str, seed: int) -> None:
     state = MassSpringState(at_rest(name).points_m, impulse(seed))
     for _ in range(120):
-        state = advanced(BODIES[name], state, 1.0 / 30.0)
+        state = simulate(BODIES[name], state, 1.0 / 30.0)
     # it may turn about its neck, and slowly does
     assert np.linalg.norm(state.velocities_m_s, axis=1).max() < 0.6
     heights = state.points_m[:, 1] - at_rest(name).points_m[:, 1]
@@ -137,13 +137,13 @@ def test_a_limb_may_be_put_anywhere(seed: int, limb: str, far_m: float) -> None:
     offset = np.random.default_rng(seed).normal(size=(3, 3)) * far_m / np.sqrt(3.0)
     sure = np.where(np.isin(np.arange(N_POINTS), which), 0.02, np.inf)
     state = with_points(start, which, start.points_m[which] + offset)
-    state = projected(BODY, state, confident_masses(BODY.mass_kg, sure))
+    state = project_onto_constraints(BODY, state, confident_masses(BODY.mass_kg, sure))
     assert np.isfinite(state.points_m).all()
     assert (state.velocities_m_s == 0.0).all()
     assert strain_m(BODY, state.points_m)[BONES].max() < BONE_GIVE_M
     assert np.degrees(worst_angle_rad(BODY, state.points_m)) < 5.0
     for _ in range(3):
-        state = advanced(BODY, state, 1.0 / 30.0)
+        state = simulate(BODY, state, 1.0 / 30.0)
     assert_valid(BODY, state.points_m, TRUNK_GIVE_M["stiff"])
 
 
@@ -153,7 +153,7 @@ def test_points_in_one_place_find_apart(broken: float) -> None:
     at[1:] += broken * np.random.default_rng(0).normal(size=(N_POINTS - 1, 3))
     state = resting(at)
     for _ in range(60):
-        state = advanced(BODY, state, 1.0 / 30.0)
+        state = simulate(BODY, state, 1.0 / 30.0)
         assert np.isfinite(state.points_m).all()
 
 
@@ -161,9 +161,9 @@ def test_points_in_one_place_find_apart(broken: float) -> None:
 @pytest.mark.parametrize("floor_m", [None, 0.0])
 def test_the_relaxed_body_stays_as_it_is(name: str, floor_m: float | None) -> None:
     body = BODIES[name]
-    start = state = relaxed(body, MIDDLE_M, floor_m=floor_m)
+    start = state = relaxed_state(body, MIDDLE_M, floor_m=floor_m)
     for _ in range(30):
-        state = advanced(body, state, 1.0 / 30.0, floor_m=floor_m)
+        state = simulate(body, state, 1.0 / 30.0, floor_m=floor_m)
     assert np.abs(state.points_m - start.points_m).max() < 1e-3
 
 
@@ -173,7 +173,7 @@ def test_relaxed_arms_and_legs_dangle_and_the_face_looks_where_it_should(
     name: str, facing_rad: float
 ) -> None:
     body = BODIES[name]
-    state = relaxed(body, MIDDLE_M, facing_rad)
+    state = relaxed_state(body, MIDDLE_M, facing_rad)
     p = state.points_m
     assert np.linalg.norm(head_middle(body, state) - MIDDLE_M) < 1e-3
     forward = np.array([np.sin(facing_rad), 0.0, np.cos(facing_rad)])
@@ -195,8 +195,8 @@ def test_left_and_right_are_alike(seed: int) -> None:
     start = at_rest("stiff").points_m - MIDDLE_M
     v = impulse(seed)
     v[HEAD] = 0.0
-    here = advanced(BODY, MassSpringState(start, v), 1.0 / 30.0)
-    there = advanced(BODY, MassSpringState(mirrored(start), mirrored(v)), 1.0 / 30.0)
+    here = simulate(BODY, MassSpringState(start, v), 1.0 / 30.0)
+    there = simulate(BODY, MassSpringState(mirrored(start), mirrored(v)), 1.0 / 30.0)
     assert np.abs(here.points_m - mirrored(there.points_m)).max() < 5e-3
 
 
@@ -204,10 +204,10 @@ def test_left_and_right_are_alike(seed: int) -> None:
 @given(seeds, st.sampled_from([2, 3, 4, 12]))
 def test_the_frame_rate_does_not_matter(seed: int, parts: int) -> None:
     start = MassSpringState(at_rest("stiff").points_m, impulse(seed))
-    whole = advanced(BODY, start, 0.1)
+    whole = simulate(BODY, start, 0.1)
     state = start
     for _ in range(parts):
-        state = advanced(BODY, state, 0.1 / parts)
+        state = simulate(BODY, state, 0.1 / parts)
     # twelve steps of the same length each, whoever asks for them
     assert np.abs(state.points_m - whole.points_m).max() < 1e-6
 
@@ -217,7 +217,7 @@ def test_falling_arms_fall_as_fast_in_steps_of_another_length(step_s: float) -> 
     # a step's length matters by what numbers damp; the swing of a straight arm has a closed form to compare with
     start = resting(BODY.rest_m)
     fallen = [
-        advanced(BODY, start, 0.25, params=SimulationParams(step_s=s)).points_m
+        simulate(BODY, start, 0.25, params=SimulationParams(step_s=s)).points_m
         for s in (1 / 120, step_s)
     ]
     assert (start.points_m[list(WRIST), 1] - fallen[0][list(WRIST), 1] > 0.12).all()
@@ -227,7 +227,7 @@ def test_falling_arms_fall_as_fast_in_steps_of_another_length(step_s: float) -> 
 def test_what_falls_freely_falls_by_half_g_t_squared() -> None:
     body_free = np.where(np.isinf(BODY.mass_kg), 5.0, BODY.mass_kg)
     params = SimulationParams(damping_per_s=0.0)
-    state = advanced(BODY, at_rest("stiff"), 0.2, body_free, params=params)
+    state = simulate(BODY, at_rest("stiff"), 0.2, body_free, params=params)
     fallen = (at_rest("stiff").points_m - state.points_m)[:, 1].mean()
     # Verlet's sum of n steps is g h^2 n (n + 1) / 2
     assert fallen == pytest.approx(0.5 * 9.81 * 0.2 * (0.2 + 1 / 120), abs=2e-3)
@@ -240,7 +240,7 @@ def test_points_of_infinite_mass_stay(seed: int, fixed: set[int]) -> None:
     stay = sorted(fixed | {HEAD})
     mass[stay] = np.inf
     state = MassSpringState(at_rest("stiff").points_m, impulse(seed))
-    for after in (advanced(BODY, state, 0.1, mass), projected(BODY, state, mass)):
+    for after in (simulate(BODY, state, 0.1, mass), project_onto_constraints(BODY, state, mass)):
         assert (after.points_m[stay] == state.points_m[stay]).all()
         assert np.isfinite(after.points_m).all()
 
@@ -252,7 +252,7 @@ def test_heavy_points_move_least() -> None:
     for spread_m in (0.3, 0.01):
         spread = np.full(N_POINTS, np.inf)
         spread[ELBOW[0]] = spread_m
-        after = projected(BODY, pulled, confident_masses(BODY.mass_kg, spread))
+        after = project_onto_constraints(BODY, pulled, confident_masses(BODY.mass_kg, spread))
         moved.append(np.linalg.norm(after.points_m[ELBOW[0]] - pulled.points_m[ELBOW[0]]))
     assert moved[1] < 0.5 * moved[0]
 
@@ -275,7 +275,7 @@ def test_the_floor_holds(seed: int) -> None:
     for k in range(45):
         towards = head_middle(BODY, state) + np.clip(low - head_middle(BODY, state), -0.03, 0.03)
         state = with_head(BODY, state, towards)
-        state = advanced(BODY, state, 1.0 / 30.0, floor_m=0.0)
+        state = simulate(BODY, state, 1.0 / 30.0, floor_m=0.0)
         assert (state.points_m[:, 1] > BODY.constraints.clearance - 1e-9).all(), k
         assert strain_m(BODY, state.points_m)[BONES].max() < 0.02
     # knees give way forwards
@@ -285,7 +285,7 @@ def test_the_floor_holds(seed: int) -> None:
 
 def test_no_floor_is_there_where_none_is_known() -> None:
     state = resting(at_rest("stiff").points_m - [0.0, 3.0, 0.0])
-    after = advanced(BODY, state, 0.1)
+    after = simulate(BODY, state, 0.1)
     assert np.abs(after.points_m - state.points_m).max() < 1e-3
 
 
@@ -297,15 +297,15 @@ def test_the_body_goes_with_its_head_by_four_fifths() -> None:
     others = np.arange(N_POINTS) != HEAD
     assert np.abs(state.points_m - start.points_m - 0.8 * way)[others].max() < 1e-3
     for _ in range(90):
-        state = advanced(BODY, state, 1.0 / 30.0)
+        state = simulate(BODY, state, 1.0 / 30.0)
     assert np.abs(state.points_m - start.points_m - way).max() < 0.06
 
 
 def test_time_that_does_not_pass_changes_nothing_and_long_gaps_are_cut() -> None:
     state = MassSpringState(at_rest("stiff").points_m, impulse(1))
-    assert advanced(BODY, state, 0.0) is state
+    assert simulate(BODY, state, 0.0) is state
     most = SimulationParams().most_s
-    assert (advanced(BODY, state, 60.0).points_m == advanced(BODY, state, most).points_m).all()
+    assert (simulate(BODY, state, 60.0).points_m == simulate(BODY, state, most).points_m).all()
 
 
 def test_a_soft_waist_leans_where_a_stiff_one_takes_the_shoulders_along() -> None:
@@ -319,7 +319,7 @@ def test_a_soft_waist_leans_where_a_stiff_one_takes_the_shoulders_along() -> Non
         state = with_points(start, HIP, (p[list(HIP)] - at) @ turn.T + at)
         mass = body.mass_kg.copy()
         mass[list(HIP)] = np.inf
-        after = projected(body, state, mass).points_m
+        after = project_onto_constraints(body, state, mass).points_m
         waist = unit(after[5] - after[12])
         tilt.append(float(np.arctan2(waist[1], waist[0])))
     assert abs(tilt[1]) < 0.75 * tilt[0]
@@ -334,7 +334,7 @@ def test_legs_pass_each_other_but_not_through(passing_m: float) -> None:
     mass[both] = 40.0
     for ahead_m, passes in ((0.0, False), (0.5, passing_m < 1.0)):
         feet = start.points_m[both] + [[-0.15, 0.05, 0.5 * ahead_m], [0.15, 0.05, -0.5 * ahead_m]]
-        state = projected(body, with_points(start, both, feet), mass)
+        state = project_onto_constraints(body, with_points(start, both, feet), mass)
         crossed = state.points_m[ANKLE[0], 0] < state.points_m[ANKLE[1], 0]
         assert crossed == passes
         assert legs_too_near_m(body, state.points_m) < 0.003
@@ -343,12 +343,12 @@ def test_legs_pass_each_other_but_not_through(passing_m: float) -> None:
 @pytest.mark.parametrize("stature_m", [1.2, 1.55, 2.0])
 def test_a_body_is_sized_by_its_shape(stature_m: float) -> None:
     shape = BodyShape(stature_m, np.concatenate([np.ones(7), 1.0 + LOWER_FACTOR_SD]))
-    body = BODY.sized(shape)
+    body = BODY.with_shape(shape)
     shin = np.linalg.norm(body.rest_m[KNEE[0]] - body.rest_m[ANKLE[0]])
     mean = np.linalg.norm(BODY.rest_m[KNEE[0]] - BODY.rest_m[ANKLE[0]])
     assert shin / mean == pytest.approx(stature_m / 1.75 * 1.04, rel=1e-6)
-    start = relaxed(body, MIDDLE_M)
+    start = relaxed_state(body, MIDDLE_M)
     state = MassSpringState(start.points_m, impulse(3))
     for _ in range(30):
-        state = advanced(body, state, 1.0 / 30.0)
+        state = simulate(body, state, 1.0 / 30.0)
         assert_valid(body, state.points_m, TRUNK_GIVE_M["stiff"])

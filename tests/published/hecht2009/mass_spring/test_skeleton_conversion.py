@@ -21,10 +21,10 @@ from mocapd.published.hecht2009.mass_spring.body_points import (
 from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
 from mocapd.published.hecht2009.mass_spring.simulation import (
     MassSpringState,
-    advanced,
-    projected,
-    relaxed,
+    project_onto_constraints,
+    relaxed_state,
     resting,
+    simulate,
 )
 from mocapd.published.hecht2009.mass_spring.skeleton_conversion import (
     points_from_skeleton,
@@ -88,11 +88,11 @@ def test_the_t_pose_is_the_t_pose() -> None:
 @given(seeds)
 def test_limbs_point_where_their_points_are(seed: int) -> None:
     # the three bones of the spine bend in an arc, the points' trunk at the waist: centimetres apart where it is bent far
-    start = relaxed(BODY, np.array([0.0, 1.63, 0.0]))
+    start = relaxed_state(BODY, np.array([0.0, 1.63, 0.0]))
     velocities = 1.5 * np.random.default_rng(seed).normal(size=(N_POINTS, 3))
     state = MassSpringState(start.points_m, velocities)
     for _ in range(6):
-        state = advanced(BODY, state, 1.0 / 30.0)
+        state = simulate(BODY, state, 1.0 / 30.0)
     pose = skeleton_from_points(BODY, state.points_m).pose
     joints = joint_positions(BODY.skeleton, pose)
     apart = np.linalg.norm(joints[JOINTS_OF_POINTS] - state.points_m[JOINT_POINTS], axis=1)
@@ -163,7 +163,7 @@ def test_noise_and_nonsense_give_rotations(seed: int) -> None:
 @given(seeds)
 def test_another_trackers_body_starts_this_one(seed: int) -> None:
     points = points_from_skeleton(BODY, random_pose(seed))
-    after = projected(BODY, resting(points)).points_m
+    after = project_onto_constraints(BODY, resting(points)).points_m
     # the pose is nearly valid: springs and limits move nothing far but the hands at the trunk
     assert np.median(np.linalg.norm(after - points, axis=1)) < 0.05
     assert np.isfinite(after).all()

@@ -16,7 +16,7 @@ from mocapd.published.hecht2009.mass_spring.body_points import (
 from mocapd.published.hecht2009.mass_spring.constraint_kernels import sweep_springs
 from mocapd.published.hecht2009.mass_spring.frusta import CHIN, CROWN, MID_WAIST, N_ENDS, NAMES
 from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
-from mocapd.published.hecht2009.mass_spring.simulation import advanced, relaxed
+from mocapd.published.hecht2009.mass_spring.simulation import relaxed_state, simulate
 from mocapd.published.hecht2009.mass_spring.springs import MOST_ADAPTED, adapted_lengths
 
 BODY = build_body(mean_shape(1.75))
@@ -78,9 +78,9 @@ def test_lengths_of_a_taller_person_are_found_and_what_is_not_seen_stays() -> No
 
 def test_the_body_takes_new_lengths() -> None:
     grown = BODY.with_lengths(1.1 * BODY.built_m)
-    state = relaxed(BODY, np.array([0.0, 1.63, 0.0]))
+    state = relaxed_state(BODY, np.array([0.0, 1.63, 0.0]))
     for _ in range(60):
-        state = advanced(grown, state, 1.0 / 30.0)
+        state = simulate(grown, state, 1.0 / 30.0)
     assert grown.springs.lengths_of(state.points_m) == pytest.approx(1.1 * BODY.built_m, abs=0.006)
     assert (grown.built_m == BODY.built_m).all()
 

@@ -17,7 +17,7 @@ _MOST_ERROR_PX2 = 100.0  # of each camera: blob and person agree within 10 work 
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class StandingHead:
+class UprightHead:
     """middle_m (3,): the head's last middle [m]; looks: number of successive looks with it there."""
 
     middle_m: Floats
@@ -29,9 +29,9 @@ class StandingHead:
         return self.looks >= _LOOKS
 
 
-def head_of_standing(
-    views: Sequence[CameraEvidence], last: StandingHead | None, stature_m: float
-) -> StandingHead | None:
+def find_upright_head(
+    views: Sequence[CameraEvidence], last: UprightHead | None, stature_m: float
+) -> UprightHead | None:
     """The head of the best upright figure; None without one, or where fewer than two cameras show it."""
     if len(views) < 2 or any(view.background.is_new for view in views):
         return None
@@ -48,5 +48,5 @@ def head_of_standing(
         return None
     middle = found[0].place_m + np.array([0.0, _HEAD_MIDDLE * stature_m, 0.0])
     if last is None or float(np.linalg.norm(last.middle_m - middle)) > _SAME_PLACE_M:
-        return StandingHead(middle, 1)
-    return StandingHead(middle, last.looks + 1)
+        return UprightHead(middle, 1)
+    return UprightHead(middle, last.looks + 1)
