@@ -148,6 +148,7 @@ def main() -> int:
     parser.add_argument("out", type=Path)
     parser.add_argument("--minutes", type=float, default=9.0)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--scenes", type=int, default=_SCENES_A_FILE, help="in each file")
     args = parser.parse_args()
     cv2.setNumThreads(1)
     clips = [read_clip(path) for path in sorted(args.clips.glob("cmu*.npz"))]
@@ -155,9 +156,9 @@ def main() -> int:
     args.out.mkdir(parents=True, exist_ok=True)
     rng = np.random.default_rng(args.seed)
     until_s, number = time.monotonic() + 60.0 * args.minutes, 0
-    while time.monotonic() < until_s:
+    while number == 0 or time.monotonic() < until_s:
         examples: list[Example] = []
-        for _ in range(_SCENES_A_FILE):
+        for _ in range(args.scenes):
             scene = random_scene(rng, scenes)
             for _ in range(_PEOPLE_A_SCENE):
                 examples += examples_of(rng, scene, clips)

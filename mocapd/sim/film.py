@@ -18,7 +18,6 @@ import numpy as np
 import mocapd.body
 import mocapd.sim
 from mocapd.assets import asset_path
-from mocapd.boundary.image_decoding import decode_picture
 from mocapd.sim.cache_file import read_or_make
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup_record import SimSetup
@@ -42,14 +41,22 @@ class Film:
     setup: SimSetup
 
 
+class _Pixels(msgspec.Struct, frozen=True):
+    """A picture of the set-up and its strokes; as pixels, because a PNG takes 20 ms to check and decode at each start."""
+
+    shape: tuple[int, int]  # rows, columns
+    pixels: bytes
+    labels: bytes
+
+
 class _FilmFile(msgspec.Struct, frozen=True):
-    """On disk, as msgpack. Pictures of the set-up are PNG: pixels, strokes."""
+    """On disk, as msgpack."""
 
     key: str
     first: int
     frames: dict[str, list[bytes]]
-    scribbles: dict[str, tuple[bytes, bytes]]
-    model: list[tuple[bytes, bytes]]
+    scribbles: dict[str, _Pixels]
+    model: list[_Pixels]
 
 
 def load_film(scenario: Scenario, cache_dir: Path, progress: Progress | None = None) -> Film:
@@ -75,8 +82,8 @@ def _film(scenario: Scenario, stored: _FilmFile) -> Film:
     setup = SimSetup(
         rig=rig_of(scenario),
         stature_m=scenario.body.stature_m,
-        scribbles={name: _labelled(pair) for name, pair in stored.scribbles.items()},
-        model=tuple(_labelled(pair) for pair in stored.model),
+        scribbles={name: _labelled(picture) for name, picture in stored.scribbles.items()},
+        model=tuple(_labelled(picture) for picture in stored.model),
     )
     frames = {name: tuple(jpegs) for name, jpegs in stored.frames.items()}
     return Film(scenario, stored.first, frames, setup)
@@ -148,8 +155,8 @@ def _render(scenario: Scenario, key: str, progress: Progress | None, n: int) -> 
         key=key,
         first=first,
         frames=frames,
-        scribbles={name: _png_pair(image) for name, image in setup.scribbles.items()},
-        model=[_png_pair(image) for image in setup.model],
+        scribbles={name: _pixels(image) for name, image in setup.scribbles.items()},
+        model=[_pixels(image) for image in setup.model],
     )
 
 
@@ -157,14 +164,14 @@ def _shoot(frame: int, quality: int, renderer: "CameraRenderer") -> bytes:
     return encode_jpeg(renderer.frame(frame), quality)
 
 
-def _png_pair(image: LabelledPicture) -> tuple[bytes, bytes]:
-    pair = [bytes(cv2.imencode(".png", array)[1]) for array in (image.pixels, image.labels)]
-    return pair[0], pair[1]
+def _pixels(image: LabelledPicture) -> _Pixels:
+    rows, columns = image.labels.shape
+    return _Pixels((rows, columns), image.pixels.tobytes(), image.labels.tobytes())
 
 
-def _labelled(pair: tuple[bytes, bytes]) -> LabelledPicture:
-    pixels, labels = (
-        decode_picture(data, flags)
-        for data, flags in zip(pair, (cv2.IMREAD_COLOR, cv2.IMREAD_GRAYSCALE), strict=True)
+def _labelled(picture: _Pixels) -> LabelledPicture:
+    pixels, labels = (np.frombuffer(data, np.uint8) for data in (picture.pixels, picture.labels))
+    # copied, because kernels are compiled for arrays that may be written
+    return LabelledPicture(
+        pixels.reshape(*picture.shape, 3).copy(), labels.reshape(picture.shape).copy()
     )
-    return LabelledPicture(pixels, labels)

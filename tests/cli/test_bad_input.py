@@ -152,10 +152,6 @@ def test_nobody_to_watch(clean_env: dict[str, str]) -> None:
     assert_one_line(mocapd(clean_env, *words), 69, "tcp/127.0.0.1:9", "mocapd run")
 
 
-def test_a_word_that_is_no_command(clean_env: dict[str, str]) -> None:
-    assert mocapd(clean_env, "dance").code == 2
-
-
 def test_a_video_shorter_than_the_others_keeps_what_there_is(
     track: Track, capture: Path, tmp_path: Path
 ) -> None:

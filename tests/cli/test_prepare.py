@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from tests.cli.mocapd_process import mocapd
+from tests.cli.mocapd_process import mocapd, mocapd_here
 
 pytestmark = pytest.mark.kernels
 
@@ -20,6 +20,6 @@ def test_after_it_the_next_start_has_nothing_to_compile(clean_env: dict[str, str
 
 
 def test_what_no_table_knows_is_refused_with_its_name(clean_env: dict[str, str]) -> None:
-    done = mocapd(clean_env, "prepare", "--set", "tracker.name=canned")
+    done = mocapd_here(clean_env, "prepare", "--set", "tracker.name=canned")
     assert done.code == 78
     assert "canned" in done.err

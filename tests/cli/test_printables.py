@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from mocapd.cli.command_list import app
 from mocapd.errors import CannotCreateError, UsageError
-from tests.cli.mocapd_process import mocapd
+from tests.cli.mocapd_process import mocapd_here
 from tests.printing.printed import keywords, pages
 
 Run = Callable[..., str]
@@ -30,7 +30,9 @@ def test_a_board_and_the_flags_to_calibrate_with_it(
     clean_env: dict[str, str], tmp_path: Path
 ) -> None:
     out = tmp_path / "board.pdf"
-    outcome = mocapd(clean_env, "board", "--out", out, "--paper", "letter", "--board-size", "8x5")
+    outcome = mocapd_here(
+        clean_env, "board", "--out", out, "--paper", "letter", "--board-size", "8x5"
+    )
     assert outcome.code == 0, outcome.err
     assert outcome.out.strip() == keywords(out.read_bytes())
     assert "--board charuco --board-size 8x5 --square 0.0" in outcome.out
@@ -54,7 +56,7 @@ def test_a_board_of_two_sides_says_how_to_glue_it(
     clean_env: dict[str, str], tmp_path: Path
 ) -> None:
     out = tmp_path / "board.pdf"
-    outcome = mocapd(clean_env, "board", "--out", out, "--two-sided")
+    outcome = mocapd_here(clean_env, "board", "--out", out, "--two-sided")
     assert outcome.code == 0, outcome.err
     assert outcome.out.strip().endswith(" --two-sided")
     assert pages(out.read_bytes()) == 2
@@ -103,7 +105,7 @@ def test_an_unwritable_path(run: Run, tmp_path: Path, command: str, place: str) 
 
 def test_it_is_one_line_on_stderr(clean_env: dict[str, str], tmp_path: Path) -> None:
     out = tmp_path / "absent" / "board.pdf"
-    outcome = mocapd(clean_env, "board", "--out", out)
+    outcome = mocapd_here(clean_env, "board", "--out", out)
     assert (outcome.code, outcome.out) == (73, "")
     assert outcome.err.count("\n") == 1
     assert outcome.err.startswith(f"mocapd: {out}: ")

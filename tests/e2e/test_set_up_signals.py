@@ -12,7 +12,8 @@ def test_sigterm_during_the_first_set_up_ends_it_in_two_seconds(
     clean_env: dict[str, str], tmp_path: Path
 ) -> None:
     empty = clean_env | {"XDG_CACHE_HOME": str(tmp_path / "cache")}
-    locks = {"pose_database.lock", "sim-living_room.lock"}  # of what is being made
+    # of what two processes make first
+    locks = {"pose_database.lock", "sim-living_room-beginning.lock"}
     with start(empty, "demo") as process:
         while not locks <= {path.name for path in (tmp_path / "cache").rglob("*.lock")}:
             assert process.poll() is None, "it ended before it made anything"

@@ -1,5 +1,6 @@
 """Which compiled code is still good, and the table of what a first start compiles."""
 
+import dis
 import subprocess
 import sys
 import time
@@ -13,6 +14,7 @@ import pytest
 from mocapd.body.arrays import SkinArrays
 from mocapd.body.posing_kernels import quat_exp
 from mocapd.errors import MalformedError
+from mocapd.kernels.callees import _codes, _global_names
 from mocapd.kernels.kernel_table import callees_of_rows, read_table, rows_of
 from mocapd.kernels.locator import KernelLocator
 from mocapd.kernels.type_codes import decode, encode
@@ -151,3 +153,15 @@ def test_the_table_names_kernels_that_there_are_callees_first() -> None:
         stage for row in rows for stage in row.stages
     }
     assert 0 < len(rows_of(rows, ["shirt"])) < len(rows)
+
+
+def test_the_globals_of_a_kernel_are_those_that_dis_names() -> None:
+    rows = rows_of(read_table(), {"shirt", "clothes", "auto", "film", "database"})
+    codes = [code for row in rows for code in _codes(row.dispatcher.py_func.__code__)]
+    codes += _codes(compile(Path(__file__).read_text("utf-8"), __file__, "exec"))
+    # more names than a byte counts
+    codes += _codes(compile("def f():\n" + "".join(f" n{i}\n" for i in range(300)), "many", "exec"))
+    for code in codes:
+        loads = (one for one in dis.get_instructions(code) if one.opname == "LOAD_GLOBAL")
+        assert list(_global_names(code)) == [one.argval for one in loads]
+    assert len(codes) > len(rows) > 100

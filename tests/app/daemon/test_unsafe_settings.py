@@ -10,7 +10,7 @@ import pytest
 from mocapd.app.daemon.unsafe_settings import unsafe_settings
 from mocapd.boundary import secret_files
 from mocapd.config.effective import load_config
-from tests.cli.mocapd_process import mocapd
+from tests.cli.mocapd_process import mocapd_here
 
 URL = "rtsp://admin:hunter2@127.0.0.1:9/stream"
 CAMERA = f"[[camera]]\nid = 'door'\nsource = '{URL}'\n"
@@ -89,7 +89,7 @@ def test_check_config_shows_no_password_and_what_is_unsafe(
 ) -> None:
     file.chmod(0o644)
     for words in (("--json",), ()):
-        outcome = mocapd(clean_env, "check-config", "--config", file, *words)
+        outcome = mocapd_here(clean_env, "check-config", "--config", file, *words)
         assert outcome.code == 0, outcome.err
         assert "hunter2" not in outcome.out + outcome.err
         assert "admin:***@127.0.0.1:9" in outcome.out
@@ -105,13 +105,13 @@ def test_check_config_shows_what_is_unsafe_of_zenoh(
     users = tmp_path / "users"
     users.write_text("game:secret\n")
     users.chmod(0o644)
-    outcome = mocapd(clean_env, "check-config", "--set", f"zenoh.password_file={users}")
+    outcome = mocapd_here(clean_env, "check-config", "--set", f"zenoh.password_file={users}")
     assert f"chmod 600 {users}" in outcome.out, outcome.err
 
 
 def test_a_camera_with_an_odd_name_is_a_camera(clean_env: dict[str, str]) -> None:
     words = ("check-config", "--changed", "--json", "--camera", 'a"\n\\=usb:\x7f')
-    outcome = mocapd(clean_env, *words)
+    outcome = mocapd_here(clean_env, *words)
     assert outcome.code == 0, outcome.err
     camera = json.loads(outcome.out)["camera"]["value"][0]
     assert (camera["id"], camera["source"]) == ('a"\n\\', "usb:\x7f")

@@ -4,11 +4,9 @@ import numpy as np
 
 from mocapd.types import Floats
 from mocapd.vision.hull.soft_carve import CERTAIN, carve_log_odds, point_log_odds, voxel_centres
-from tests.vision.hull.ring_of_cameras import BOX_M, FIGURE, inside_figure, ring, silhouette
-from tests.vision.hull.test_ray_hull import inside_masks
+from tests.vision.hull.ring_of_cameras import BOX_M, FIGURE, inside_figure, silhouette
+from tests.vision.hull.test_ray_hull import CAMERAS, MASKS, inside_masks
 
-CAMERAS = ring(4)
-MASKS = [silhouette(camera, FIGURE) for camera in CAMERAS]
 POINTS_M, _ = voxel_centres(BOX_M, 0.04)
 
 
