@@ -16,7 +16,7 @@ from mocapd.fit.rays_in_other_kernels import evenly_between, shown_on_rays
 from mocapd.fit.work_rays import rays_at, work_rays_in_world
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Bytes, Camera, Floats, Ints
-from mocapd.vision.ray_matching_kernels import match_along_rays
+from mocapd.vision.ray_matching_kernels import EVERYWHERE, match_along_rays
 
 GRID_PX = 3  # the middle one of so many work pixels each way is looked for
 _NEAREST_M = 0.3
@@ -98,7 +98,7 @@ def stereo_depth_m(
     def match(mine: slice) -> None:
         match_along_rays(
             *pair.greys, pixels[mine], there[mine], p.half_px, p.least_contrast, _APART, p.least_ahead,
-            place[mine], alike[mine],
+            EVERYWHERE, place[mine], alike[mine],
         )  # fmt: skip
 
     each(match, (slice(0, len(y) // 2), slice(len(y) // 2, None)))

@@ -1,8 +1,12 @@
 """How far along a ray something is: a patch of one picture looked for in another, along the ray's image there."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.types import Bytes
 
 Array = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -10,7 +14,19 @@ Weights = tuple[np.float32, np.float32, np.float32, np.float32]
 
 # of a row of a patch: wider than any patch, and a whole number of the processor's vectors
 _LANES = 16
+_LEAST_SHARE = 0.3  # of a patch that is of one surface
 _FLAT = np.float32(0.03)  # length of a patch less its mean; what has less is of one grey
+
+
+class Surface(NamedTuple):
+    """Surface labels of a picture: label (h,w) of blocks of block_px pixels each way, beginning at block `left`, `top`; 0:
+    unknown. The texture of a surface shows its distance; its outline lies farther, where it curves away. (0,0): whole patches
+    are compared."""
+
+    label: Bytes
+    left: int
+    top: int
+    block_px: int
 
 
 @njit(cache=True, nogil=True)
@@ -49,22 +65,23 @@ def _centred(
     first: int,
     weights: Weights,
     within: Singles,
+    count: np.float32,
     out: Singles,
 ) -> np.float32:
     """Fill out (side,_LANES) with the patch that begins `first` in the pixels of a picture, so many a row, less its mean; its
-    length then. within (_LANES,): 1 within a patch's row, else 0."""
+    length then. within (side,_LANES): 1 for a pixel of the patch that counts, else 0; so many count."""
     side, step = out.shape[0], np.uint64(width)
     total, squares = np.float32(0.0), np.float32(0.0)
     for j in range(side):
-        here, row = np.uint64(first) + np.uint64(j) * step, out[j]
+        here, row, counts = np.uint64(first) + np.uint64(j) * step, out[j], within[j]
         for i in range(np.uint64(_LANES)):
-            row[i] = within[i] * _grey_at(pixels, here + i, here + step + i, weights)
+            row[i] = counts[i] * _grey_at(pixels, here + i, here + step + i, weights)
             total += row[i]
-    mean = total / np.float32(side * side)
+    mean = total / count
     for j in range(side):
-        row = out[j]
+        row, counts = out[j], within[j]
         for i in range(np.uint64(_LANES)):
-            row[i] -= mean * within[i]
+            row[i] -= mean * counts[i]
             squares += row[i] * row[i]
     length: np.float32 = np.sqrt(squares)
     return length
@@ -78,20 +95,21 @@ def _correlation(
     first: int,
     weights: Weights,
     within: Singles,
+    count: np.float32,
 ) -> np.float32:
     """Of a centred patch (side,_LANES) of length 1 with that which begins `first` in the pixels of another picture; -1 with
     one that is flat. The rest is as in `_centred`."""
     side, step = mine.shape[0], np.uint64(width)
     total, squares, products = np.float32(0.0), np.float32(0.0), np.float32(0.0)
     for j in range(side):
-        here, row = np.uint64(first) + np.uint64(j) * step, mine[j]
+        here, row, counts = np.uint64(first) + np.uint64(j) * step, mine[j], within[j]
         for i in range(np.uint64(_LANES)):
             its = _grey_at(pixels, here + i, here + step + i, weights)
-            inside = its * within[i]
+            inside = its * counts[i]
             total += inside
             squares += inside * its
             products += row[i] * its
-    squares -= total * total / np.float32(side * side)
+    squares -= total * total / count
     if squares < _FLAT * _FLAT:
         return np.float32(-1.0)
     alike: np.float32 = products / np.sqrt(squares)
@@ -108,6 +126,7 @@ def match_along_rays(
     least_contrast: float,
     apart: int,
     least_ahead: float,
+    surface: Surface,
     place: Array,
     alike: Array,
 ) -> None:
@@ -116,11 +135,15 @@ def match_along_rays(
     grey, other (h,w); at_px (N,2): the rays' pixels in the first; there_px (N,K,2): where K places along each ray show
     in the other, NaN for none; half: at most 7. Fills place (N,), 0..K-1 between places, and alike (N,), the correlation
     there; alike is -1 where the patch has less contrast (standard deviation, grey values), the best place is at an end,
-    or it is not ahead by least_ahead of all places that are `apart` or more from it.
+    or it is not ahead by least_ahead of all places that are `apart` or more from it. Only those pixels of a patch count that
+    have the label of its middle, see `Surface`.
     """
     side = 2 * half + 1
-    mine, within = np.zeros((side, _LANES), np.float32), np.zeros(_LANES, np.float32)
-    within[:side] = 1.0
+    mine, within = np.zeros((side, _LANES), np.float32), np.zeros((side, _LANES), np.float32)
+    within[:, :side] = 1.0
+    count = np.float32(side * side)
+    labels, left, top, block_px = surface
+    rows, columns = labels.shape
     own, its = grey.ravel(), other.ravel()
     n_places = there_px.shape[1]
     scores = np.empty(n_places)
@@ -129,8 +152,20 @@ def match_along_rays(
         first, weights = _place(grey.shape, at_px[n, 0], at_px[n, 1], half)
         if first < 0:
             continue
-        length = _centred(own, grey.shape[1], first, weights, within, mine)
-        if length < _FLAT or length < least_contrast * side:
+        if rows > 0:
+            x0, y0 = int(at_px[n, 0]), int(at_px[n, 1])
+            label = labels[y0 // block_px - top, x0 // block_px - left]
+            count = np.float32(0.0)
+            for j in range(side):
+                row = min(max((y0 - half + j) // block_px - top, 0), rows - 1)
+                for i in range(side):
+                    column = min(max((x0 - half + i) // block_px - left, 0), columns - 1)
+                    within[j, i] = np.float32(labels[row, column] == label)
+                    count += within[j, i]
+            if label == 0 or count < _LEAST_SHARE * side * side:
+                continue
+        length = _centred(own, grey.shape[1], first, weights, within, count, mine)
+        if length < _FLAT or length < least_contrast * np.sqrt(count):
             continue
         mine /= length
         best = 0
@@ -138,7 +173,7 @@ def match_along_rays(
             first, weights = _place(other.shape, there_px[n, k, 0], there_px[n, k, 1], half)
             scores[k] = -1.0
             if first >= 0:
-                scores[k] = _correlation(mine, its, other.shape[1], first, weights, within)
+                scores[k] = _correlation(mine, its, other.shape[1], first, weights, within, count)
             if scores[k] > scores[best]:
                 best = k
         if best == 0 or best == n_places - 1:
@@ -152,3 +187,6 @@ def match_along_rays(
         bend = scores[best - 1] - 2.0 * scores[best] + scores[best + 1]
         beside = 0.5 * (scores[best - 1] - scores[best + 1]) / bend if bend < -1e-6 else 0.0
         place[n], alike[n] = best + min(max(beside, -0.5), 0.5), scores[best]
+
+
+EVERYWHERE = Surface(np.zeros((0, 0), np.uint8), 0, 0, 1)

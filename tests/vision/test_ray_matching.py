@@ -5,7 +5,7 @@ import pytest
 
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Bytes, Camera, Floats
-from mocapd.vision.ray_matching_kernels import match_along_rays
+from mocapd.vision.ray_matching_kernels import EVERYWHERE, Surface, match_along_rays
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
@@ -55,7 +55,7 @@ def test_whole_pixels_equal_the_naive_twin() -> None:
     at = np.array([[40.0, 41.0], [22.0, 30.0]])
     there = at[:, None] + np.stack([np.arange(-6.0, 7.0), np.zeros(13)], axis=1)
     place, alike = np.empty(2), np.empty(2)
-    match_along_rays(grey, other, at, there, 5, 1.0, *ANY, place, alike)
+    match_along_rays(grey, other, at, there, 5, 1.0, *ANY, EVERYWHERE, place, alike)
     for n in range(2):
         wanted = naive_match(grey, other, at[n], there[n], 5)
         assert np.argmax(wanted) == 9  # three to the right
@@ -74,7 +74,7 @@ def test_the_distance_of_a_wall_is_found_to_a_centimetre(z_m: float) -> None:
     points = origin + (tried[:, None] + offsets)[..., None] * along[:, None]
     there = project(RIGHT, points.reshape(-1, 3)).reshape(len(at), 17, 2)
     place, alike = np.empty(len(at)), np.empty(len(at))
-    match_along_rays(*pictures, at, there, 6, 4.0, *ANY, place, alike)
+    match_along_rays(*pictures, at, there, 6, 4.0, *ANY, EVERYWHERE, place, alike)
     assert (alike > 0.85).mean() > 0.9
     found = tried + np.interp(place, np.arange(17), offsets)
     error_m = np.abs(found - truth)[alike > 0.85]
@@ -87,15 +87,21 @@ def test_what_has_no_texture_or_ends_the_search_is_not_believed() -> None:
     at = np.array([[40.0, 40.0]])
     there = at[:, None] + np.stack([np.arange(-3.0, 4.0), np.zeros(7)], axis=1)
     place, alike = np.empty(1), np.empty(1)
-    match_along_rays(flat, flat, at, there, 5, 1.0, *ANY, place, alike)
+    match_along_rays(flat, flat, at, there, 5, 1.0, *ANY, EVERYWHERE, place, alike)
     assert alike[0] == -1.0
     rng = np.random.default_rng(1)
     grey = rng.integers(0, 255, (80, 90), dtype=np.uint8)
-    match_along_rays(grey, np.roll(grey, 9, axis=1), at, there, 5, 1.0, *ANY, place, alike)
+    match_along_rays(
+        grey, np.roll(grey, 9, axis=1), at, there, 5, 1.0, *ANY, EVERYWHERE, place, alike
+    )
     assert alike[0] < 0.6
-    match_along_rays(grey, np.roll(grey, 3, axis=1), at, there, 5, 1.0, *ANY, place, alike)
+    match_along_rays(
+        grey, np.roll(grey, 3, axis=1), at, there, 5, 1.0, *ANY, EVERYWHERE, place, alike
+    )
     assert alike[0] == -1.0  # at the end of what was tried
-    match_along_rays(grey, grey, at, np.full_like(there, np.nan), 5, 1.0, *ANY, place, alike)
+    match_along_rays(
+        grey, grey, at, np.full_like(there, np.nan), 5, 1.0, *ANY, EVERYWHERE, place, alike
+    )
     assert alike[0] == -1.0
 
 
@@ -106,10 +112,33 @@ def test_stripes_along_the_ray_are_alike_everywhere_and_not_believed() -> None:
     at = np.array([[40.0, 40.0], [45.0, 33.0]])
     there = at[:, None] + np.stack([np.arange(-6.0, 7.0), np.zeros(13)], axis=1)
     place, alike = np.empty(2), np.empty(2)
-    match_along_rays(grey, other, at, there, 5, 4.0, *ANY, place, alike)
+    match_along_rays(grey, other, at, there, 5, 4.0, *ANY, EVERYWHERE, place, alike)
     assert (alike > 0.85).any()
-    match_along_rays(grey, other, at, there, 5, 4.0, 2, 0.03, place, alike)
+    match_along_rays(grey, other, at, there, 5, 4.0, 2, 0.03, EVERYWHERE, place, alike)
     assert (alike == -1.0).all()
     spots = np.random.default_rng(6).integers(0, 255, (80, 90), dtype=np.uint8)
-    match_along_rays(spots, np.roll(spots, 3, axis=1), at, there, 5, 4.0, 2, 0.03, place, alike)
+    match_along_rays(
+        spots, np.roll(spots, 3, axis=1), at, there, 5, 4.0, 2, 0.03, EVERYWHERE, place, alike
+    )
     assert (alike > 0.85).all()
+
+
+def test_only_the_surface_of_the_middle_counts_not_what_shows_beside_it() -> None:
+    """A band whose own texture moved by two pixels, before a room of far more contrast that moved by none."""
+    rng = np.random.default_rng(7)
+    room = rng.integers(0, 255, (80, 90), dtype=np.uint8)
+    texture = rng.integers(100, 140, (80, 90), dtype=np.uint8)
+    on = np.zeros((80, 90), np.uint8)
+    on[:, 36:45] = 1
+    grey = np.where(on > 0, texture, room)
+    other = np.where(np.roll(on, 2, axis=1) > 0, np.roll(texture, 2, axis=1), room)
+    at = np.array([[40.0, 40.0]])
+    there = at[:, None] + np.stack([np.arange(-4.0, 5.0), np.zeros(9)], axis=1)
+    place, alike = np.empty(1), np.empty(1)
+    surfaces = {2.0: Surface(on, 0, 0, 1), 0.0: EVERYWHERE}
+    for moved, surface in surfaces.items():
+        match_along_rays(grey, other, at, there, 6, 4.0, *ANY, surface, place, alike)
+        assert abs(place[0] - 4.0 - moved) < 0.6
+    nothing = Surface(np.zeros_like(on), 0, 0, 1)
+    match_along_rays(grey, other, at, there, 6, 4.0, *ANY, nothing, place, alike)
+    assert alike[0] == -1.0

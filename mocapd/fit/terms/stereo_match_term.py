@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,8 +17,9 @@ from mocapd.fit.terms.map_sampling_kernels import N_GROUPS, N_PARTS, spread_over
 from mocapd.fit.work_rays import rays_at, work_rays_in_world
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Bytes, Camera, Ints
-from mocapd.vision.ray_matching_kernels import match_along_rays
+from mocapd.vision.ray_matching_kernels import Surface, match_along_rays
 
+_INSIDE = np.ones((3, 3), np.uint8)  # a part as drawn may be off by a work pixel
 _EDGE_PX = 2  # work pixels from the body's edge: nearer, a patch holds more of what is behind
 
 
@@ -70,9 +72,11 @@ def measured_distances(
     shown_on_rays(camera_arrays(other), origin, along, expected_m[:, None] + offsets_m, there)
     place, alike = np.empty(len(y)), np.empty(len(y))
 
+    surface = _surface(drawn, m.part, corner, scale)
+
     def match(mine: slice) -> None:
         match_along_rays(
-            *greys, pixels[mine], there[mine], p.half_px, p.least_contrast, p.places, 0.0, place[mine], alike[mine]
+            *greys, pixels[mine], there[mine], p.half_px, p.least_contrast, p.places, 0.0, surface, place[mine], alike[mine]
         )  # fmt: skip
 
     half = len(y) // 2
@@ -82,6 +86,19 @@ def measured_distances(
     return MeasuredDistances(
         triangle[good], origin, along[good], found_m[good], np.full(int(good.sum()), p.sd_m)
     )
+
+
+def _surface(
+    drawn: tuple[Bytes, NDArray[np.int32]],
+    part: NDArray[np.uint8],
+    corner: tuple[int, int],
+    image_scale: int,
+) -> Surface:
+    """The inside of each part of the body as drawn, away from its outline."""
+    ids, triangles = drawn
+    label = np.where(ids > 0, part[np.maximum(triangles, 0)] + np.uint8(1), np.uint8(0))
+    label[cv2.erode(label, _INSIDE) != cv2.dilate(label, _INSIDE)] = 0
+    return Surface(label, *corner, image_scale)
 
 
 def _samples(
