@@ -55,7 +55,7 @@ class _FilmFile(msgspec.Struct, frozen=True):
 def load_film(scenario: Scenario, cache_dir: Path, progress: Progress | None = None) -> Film:
     """The film of a scenario, from the cache or rendered now (about 20 s for 12 s of two cameras).
 
-    A stale, damaged or half-written cache file is rendered anew. Raises CannotCreateError when the
+    A stale, damaged or incomplete cache file is rendered again. Raises CannotCreateError when the
     cache cannot be written.
     """
     key = film_key(scenario)
@@ -75,15 +75,15 @@ def _film(scenario: Scenario, stored: _FilmFile) -> Film:
     setup = SimSetup(
         rig=rig_of(scenario),
         stature_m=scenario.body.stature_m,
-        scribbles={name: _labelled(pair) for name, pair in stored.scribbles.items()},
-        model=tuple(_labelled(pair) for pair in stored.model),
+        scribbles={name: _decode_pair(pair) for name, pair in stored.scribbles.items()},
+        model=tuple(_decode_pair(pair) for pair in stored.model),
     )
     frames = {name: tuple(jpegs) for name, jpegs in stored.frames.items()}
     return Film(scenario, stored.first, frames, setup)
 
 
 def load_beginning(scenario: Scenario, cache_dir: Path, progress: Progress | None = None) -> Film:
-    """The first seconds of the film, for who cannot wait for all of it: they go forth and back, so that nobody leaps. Raises
+    """The first seconds of the film, which are ready sooner. They play forth and back, without a jump. Raises
     CannotCreateError."""
     key = film_key(scenario)
     whole, path = (
@@ -162,7 +162,7 @@ def _png_pair(image: LabelledPicture) -> tuple[bytes, bytes]:
     return pair[0], pair[1]
 
 
-def _labelled(pair: tuple[bytes, bytes]) -> LabelledPicture:
+def _decode_pair(pair: tuple[bytes, bytes]) -> LabelledPicture:
     pixels, labels = (
         decode_picture(data, flags)
         for data, flags in zip(pair, (cv2.IMREAD_COLOR, cv2.IMREAD_GRAYSCALE), strict=True)
