@@ -75,8 +75,8 @@ def _film(scenario: Scenario, stored: _FilmFile) -> Film:
     setup = SimSetup(
         rig=rig_of(scenario),
         stature_m=scenario.body.stature_m,
-        scribbles={name: _decode_pair(pair) for name, pair in stored.scribbles.items()},
-        model=tuple(_decode_pair(pair) for pair in stored.model),
+        scribbles={name: _labelled(pair) for name, pair in stored.scribbles.items()},
+        model=tuple(_labelled(pair) for pair in stored.model),
     )
     frames = {name: tuple(jpegs) for name, jpegs in stored.frames.items()}
     return Film(scenario, stored.first, frames, setup)
@@ -162,7 +162,7 @@ def _png_pair(image: LabelledPicture) -> tuple[bytes, bytes]:
     return pair[0], pair[1]
 
 
-def _decode_pair(pair: tuple[bytes, bytes]) -> LabelledPicture:
+def _labelled(pair: tuple[bytes, bytes]) -> LabelledPicture:
     pixels, labels = (
         decode_picture(data, flags)
         for data, flags in zip(pair, (cv2.IMREAD_COLOR, cv2.IMREAD_GRAYSCALE), strict=True)
