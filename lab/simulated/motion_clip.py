@@ -10,7 +10,7 @@ from mocapd.body.bones import NAMES, PARENT_OF
 from mocapd.body.skeleton import INDEX, joint_positions
 from mocapd.errors import InputError
 from mocapd.geometry import rotations
-from mocapd.sim.person.motion import standing_pose
+from mocapd.sim.person.motion import upright_pose
 from mocapd.sim.world import Performed, PoseAt
 from mocapd.types import Floats, Pose, Skeleton
 
@@ -133,7 +133,7 @@ def performed(clip: MotionClip, where: Placement) -> Performed:
         heading_rad = np.radians(where.yaw_deg)
         upright = np.tile(rotations.exp(np.array([0.0, heading_rad, 0.0])), (len(NAMES), 1))
         if where.stance != "t_pose":
-            upright = standing_pose(skeleton, where.stance, heading_rad).quats_xyzw
+            upright = upright_pose(skeleton, where.stance, heading_rad).quats_xyzw
 
         def pose_at(t_s: float) -> Pose:
             frame = np.clip(

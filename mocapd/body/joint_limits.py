@@ -56,13 +56,13 @@ _LIMITS_DEG: dict[str, tuple[int, tuple[tuple[float, float], ...]]] = {
     "UpperLeg": (Y, ((-135.0, 30.0), (-55.0, 110.0), (-35.0, 125.0))),
     # as at the elbow, the neutral twist of the thigh differs between skeletons
     "LowerLeg": (Y, ((-10.0, 155.0), (-35.0, 45.0), (-18.0, 18.0))),
-    # recorded feet turn up by 60 and aside by 45 where the heels are up
+    # recorded feet turn up by 60 and sideways by 45 where the heels are up
     "Foot": (Z, ((-60.0, 66.0), (-45.0, 45.0), (-45.0, 30.0))),
 }
 
 
 def limits_of(groups: Sequence[tuple[str, ...]]) -> JointLimits:
-    """The limits of an adult for these rotation groups; those of no known name are free."""
+    """The limits of an adult for these rotation groups; unknown names are free."""
     axis = np.full(len(groups), -1)
     share = np.ones(len(INDEX))
     lower, upper = np.full((len(groups), 3), -np.inf), np.full((len(groups), 3), np.inf)

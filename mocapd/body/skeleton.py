@@ -41,7 +41,7 @@ def standard_skeleton(stature_m: float) -> Skeleton:
 
 
 def rest_pose(skeleton: Skeleton) -> Pose:
-    """The T-pose, standing at the origin."""
+    """The T-pose with the feet on the floor at the origin."""
     return Pose(
         skeleton.rest_m[0].copy(), np.tile(rotations.IDENTITY_XYZW, (len(skeleton.names), 1))
     )

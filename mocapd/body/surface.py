@@ -49,7 +49,7 @@ def posed_vertices(surface: Surface, skeleton: Skeleton, pose: Pose, joints_m: F
     return out
 
 
-def joined(tubes: list[Tube]) -> Surface:
+def join_tubes(tubes: list[Tube]) -> Surface:
     """The tubes with flat ends as one surface."""
     vertices, triangles, areas, materials, parts, weights = [], [], [], [], [], []
     offset = 0

@@ -11,7 +11,7 @@ import numpy as np
 from mocapd.body.arm_tubes import arm_tube
 from mocapd.body.leg_tubes import foot_tube, leg_tube, plain_leg_tube
 from mocapd.body.shape import N_FACTORS, BodyShape, mean_shape, skeleton_of
-from mocapd.body.surface import Surface, Tube, joined
+from mocapd.body.surface import Surface, Tube, join_tubes
 from mocapd.body.trunk_tubes import head_tube, torso_tube
 from mocapd.types import Floats, Skeleton
 
@@ -21,7 +21,7 @@ Build = Callable[[BodyShape], Surface]
 def build_surface(shape: BodyShape) -> Surface:
     """The body of this shape in its T-pose; its legs are rough."""
     skeleton = skeleton_of(shape)
-    return joined([
+    return join_tubes([
         *_above_the_hips(shape, skeleton),
         plain_leg_tube(shape, skeleton, "left"),
         plain_leg_tube(shape, skeleton, "right"),
@@ -31,7 +31,7 @@ def build_surface(shape: BodyShape) -> Surface:
 def build_whole_surface(shape: BodyShape) -> Surface:
     """The same with legs and feet that are tracked, too; above the hips it is vertex by vertex the same."""
     skeleton = skeleton_of(shape)
-    return joined([
+    return join_tubes([
         *_above_the_hips(shape, skeleton),
         leg_tube(shape, skeleton, "left"),
         leg_tube(shape, skeleton, "right"),

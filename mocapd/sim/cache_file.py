@@ -1,4 +1,4 @@
-"""What the simulator keeps in the cache: a digest, then msgpack; read only when both digest and key fit."""
+"""The simulator's cache files: a digest, then msgpack. A file is read only if digest and key match."""
 
 import hashlib
 from collections.abc import Callable
@@ -18,7 +18,7 @@ _MOST_BYTES = 4 << 30  # two minutes of the largest pictures
 
 
 class Keyed(Protocol):
-    """`key` tells what the file was made from."""
+    """key: a hash of everything the file was made from."""
 
     @property
     def key(self) -> str: ...
@@ -28,16 +28,15 @@ F = TypeVar("F", bound=Keyed)
 
 
 def read_or_make(path: Path, lock: str, key: str, kind: type[F], make: Callable[[], F]) -> F:
-    """What is kept there, else what `make` returns, kept from then on.
+    """The cached file, or the result of `make`, which is stored.
 
-    lock: a file of the same folder; of several processes that find nothing one makes it. Raises
-    CannotCreateError.
+    lock: a file in the same folder, so that only one of several processes makes it. Raises CannotCreateError.
     """
     stored = read_cached(path, key, kind)
     if stored is not None:
         return stored
     with one_at_a_time(path.parent, lock):
-        stored = read_cached(path, key, kind)  # by whom we waited for
+        stored = read_cached(path, key, kind)  # another process may have made it meanwhile
         if stored is None:
             stored = make()
             write_cached(path, stored)
@@ -45,7 +44,7 @@ def read_or_make(path: Path, lock: str, key: str, kind: type[F], make: Callable[
 
 
 def read_cached(path: Path, key: str, kind: type[F]) -> F | None:
-    """What is kept there, or None when there is nothing that fits, or a byte of it has changed."""
+    """The cached file; None if it is absent, has another key or is damaged."""
     try:
         data = memoryview(read_file(path, _MOST_BYTES))
         if _digest(data[_DIGEST_BYTES:]) != data[:_DIGEST_BYTES]:
@@ -57,7 +56,7 @@ def read_cached(path: Path, key: str, kind: type[F]) -> F | None:
 
 
 def write_cached(path: Path, file: Keyed) -> None:
-    """Write it whole or not at all. Raises CannotCreateError."""
+    """Atomic write. Raises CannotCreateError."""
     data = msgspec.msgpack.encode(file)
     try:
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)

@@ -62,7 +62,7 @@ class _FilmFile(msgspec.Struct, frozen=True):
 def load_film(scenario: Scenario, cache_dir: Path, progress: Progress | None = None) -> Film:
     """The film of a scenario, from the cache or rendered now (about 20 s for 12 s of two cameras).
 
-    A stale, damaged or half-written cache file is rendered anew. Raises CannotCreateError when the
+    A stale, damaged or incomplete cache file is rendered again. Raises CannotCreateError when the
     cache cannot be written.
     """
     key = film_key(scenario)
@@ -90,7 +90,7 @@ def _film(scenario: Scenario, stored: _FilmFile) -> Film:
 
 
 def load_beginning(scenario: Scenario, cache_dir: Path, progress: Progress | None = None) -> Film:
-    """The first seconds of the film, for who cannot wait for all of it: they go forth and back, so that nobody leaps. Raises
+    """The first seconds of the film, which are ready sooner. They play forth and back, without a jump. Raises
     CannotCreateError."""
     key = film_key(scenario)
     whole, path = (

@@ -43,8 +43,8 @@ class BodySpec(Table, frozen=True, kw_only=True):
 class PoseKeyframe(Table, frozen=True, kw_only=True):
     """A pose that the motion passes through. Arm directions are in the frame of the chest.
 
-    left_foot_m, right_foot_m: how far the ankle is from its place when standing, seen along the hips: to the
-    person's left, up, forwards [m]; when absent, the foot stands and steps by itself.
+    left_foot_m, right_foot_m: offset of the ankle from its place in the upright pose, in the frame of the hips:
+    to the person's left, up, forwards [m]; when absent, the foot stands and steps by itself.
     """
 
     t_s: NotNegative
@@ -74,7 +74,7 @@ class MotionSpec(Table, frozen=True, kw_only=True):
 
     keyframes: Annotated[list[PoseKeyframe], msgspec.Meta(min_length=1)]
     oscillations: tuple[Oscillation, ...] = ()
-    sway_deg: NotNegative = 1.0  # slow movement of a person who stands
+    sway_deg: NotNegative = 1.0  # slow movement of an upright person
 
 
 class Weave(Table, frozen=True, kw_only=True):
@@ -136,8 +136,8 @@ class Screen(Table, frozen=True, kw_only=True):
 
 
 class Bystander(Table, frozen=True, kw_only=True):
-    """Somebody else who is in the picture and not tracked; throws no shadow. screen: on which they are shown, instead of
-    being in the room."""
+    """Another, untracked person in the picture, without a shadow. screen: that shows the person, instead of
+    the room."""
 
     body: BodySpec = BodySpec()
     motion: MotionSpec

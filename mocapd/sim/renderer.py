@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mocapd.sim.person.figure import Figure, build_figure
 from mocapd.sim.person.figure_kernels import light_vertices, vertex_normals
-from mocapd.sim.person.group import Group, PersonBody, group_of, patches_seen, posed_group
+from mocapd.sim.person.group import Group, PersonBody, group_of, posed_group, visible_patches
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
 from mocapd.sim.response import noise_table, response_curve
 from mocapd.sim.response_kernels import PersonLayer, Sensor, expose, shade_room
@@ -179,12 +179,12 @@ class CameraRenderer:
     def labels(self, pose: Pose, jacket: float = 0.0) -> tuple[Bytes, Bytes]:
         """Exact labels of the person alone: patch index (H,W) 0..20, and 255 where she is."""
         owner = self._owners((0,), [PersonBody(pose, jacket)])
-        seen = owner >= 0
-        patch = np.where(seen, patches_seen(self.figure, jacket)[np.maximum(owner, 0)], 0)
-        return patch.astype(np.uint8), _mask(seen)
+        visible = owner >= 0
+        patch = np.where(visible, visible_patches(self.figure, jacket)[np.maximum(owner, 0)], 0)
+        return patch.astype(np.uint8), _mask(visible)
 
     def labels_at(self, t_s: float) -> tuple[Bytes, Bytes, Bytes]:
-        """Exact labels at one instant: patch index (H,W) 0..20, 255 where the person is seen, and where another is."""
+        """Exact labels at one instant: patch index (H,W) 0..20, 255 where the person is visible, and where another is."""
         there = self._there(t_s)
         width, height = self.camera.size_px
         if not there:
@@ -193,12 +193,12 @@ class CameraRenderer:
         owner = self._owners(there, self._bodies(there, t_s))
         own = len(self.figure.triangles) if there[0] == 0 else 0
         person = (owner >= 0) & (owner < own)
-        patches = patches_seen(self.figure, self._world.jacket(t_s))
+        patches = visible_patches(self.figure, self._world.jacket(t_s))
         patch = np.where(person, patches[np.clip(owner, 0, len(patches) - 1)], 0)
         return patch.astype(np.uint8), _mask(person), _mask(owner >= own)
 
     def mask_of_group(self, bodies: list[PersonBody]) -> Bytes:
-        """255 where the person (H,W) is seen, of as many figures, the person first."""
+        """255 where the person (H,W) is visible among these figures, the person first."""
         owner = self._owners(tuple(range(len(bodies))), bodies)
         return _mask((owner >= 0) & (owner < len(self.figure.triangles)))
 
@@ -226,7 +226,7 @@ class CameraRenderer:
         return out
 
     def _room(self, levels: Floats) -> Singles:
-        """The empty room in this light; summed anew only when the light has changed."""
+        """The empty room in this light; computed again only after a change of the light."""
         if self._lit is None or not np.array_equal(levels, self._lit[0]):
             self._lit = (levels, self.background.lit(levels))
         return self._lit[1]

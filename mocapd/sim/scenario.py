@@ -130,7 +130,7 @@ class Room(Table, frozen=True, kw_only=True):
     walls: SurfaceSpec = SurfaceSpec(srgb=(188, 182, 170), pattern="plaster")
     floor: SurfaceSpec = SurfaceSpec(srgb=(150, 110, 72), pattern="planks")
     ceiling: SurfaceSpec = SurfaceSpec(srgb=(220, 218, 212))
-    sky: Vec3 = (0.45, 0.62, 0.95)  # linear R G B, seen where nothing stands
+    sky: Vec3 = (0.45, 0.62, 0.95)  # linear R G B, of pixels without an object
     things: tuple[Thing, ...] = ()
 
 
@@ -217,7 +217,7 @@ def _all_keys() -> list[str]:
 
 
 def _check(s: Scenario, where: str) -> None:
-    """What one value alone cannot tell: names that refer to others, times inside the loop."""
+    """Checks across values: references between names, times inside the loop."""
     names = [camera.name for camera in s.cameras]
     if len(set(names)) != len(names):
         raise ConfigError("two cameras have one name", f"{where}, cameras", "rename one of them")

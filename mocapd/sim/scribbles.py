@@ -11,7 +11,7 @@ _LEAST_PX = 40  # patches smaller than this are left out
 
 
 def scribble(patch: Bytes, rng: np.random.Generator) -> Bytes:
-    """Strokes (H,W) of colour ids over the patches (H,W) 0..20 that can be seen: a zigzag in each."""
+    """Strokes (H,W) of colour ids over the visible patches (H,W) 0..20: a zigzag in each."""
     out = np.zeros_like(patch)
     colour_of = standard_shirt().colour_of_patch
     kernel = np.ones((2 * _MARGIN_PX + 1, 2 * _MARGIN_PX + 1), dtype=np.uint8)

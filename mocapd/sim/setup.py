@@ -20,7 +20,7 @@ MODEL_POSES = (
 
 
 def setup_of(scenario: Scenario, renderers: list[CameraRenderer]) -> SimSetup:
-    """Calibrate on a scenario, whose cameras are at hand. Who wears no shirt has no pictures of it."""
+    """The setup of a scenario with these renderers; without pictures of the shirt if the person wears none."""
     shirt = scenario.clothes.shirt != "plain"
     return SimSetup(
         rig=rig_of(scenario),

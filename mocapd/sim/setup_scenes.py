@@ -8,7 +8,7 @@ from mocapd.sim.board.board_picture import PrintedBoard
 class SetupScene(StrEnum):
     """Named as the steps of the setup name them."""
 
-    EMPTY = "empty"  # nobody in the room
+    EMPTY = "empty"  # no person in the room
     LENS = "lens"  # the board is shown to every camera, at many places and slants
     ROOM = "room"  # the board is held where the cameras see it together
     FLOOR = "floor"  # the board lies on the floor

@@ -45,7 +45,9 @@ class World:
         self.scenario = scenario
         self.shape = body_shape(scenario)
         self.skeleton: Skeleton = skeleton_of(self.shape)
-        self._pose_at = performed(self.skeleton) if performed else _looped(scenario, self.skeleton)
+        self._pose_at = (
+            performed(self.skeleton) if performed else _looping_pose(scenario, self.skeleton)
+        )
         self.screen = screen
         self.others = tuple(
             World(_of_bystander(scenario, i), screen=other.screen)
@@ -83,7 +85,7 @@ class World:
         return self._pose_at(t_s)
 
 
-def _looped(scenario: Scenario, skeleton: Skeleton) -> PoseAt:
+def _looping_pose(scenario: Scenario, skeleton: Skeleton) -> PoseAt:
     motion: Motion = compile_motion(scenario, skeleton)
     return lambda t_s: pose_at(motion, t_s)
 
@@ -120,7 +122,7 @@ def _steps(light: Light) -> list[tuple[float, float, float]]:
 
 
 def _level(steps: list[tuple[float, float, float]], t_s: float) -> float:
-    """Where the steps, each a time, a level and how long it takes, have led; the last one begins the loop."""
+    """The level after steps of (time, level, duration); the loop starts at the last step's level."""
     level = steps[-1][1] if steps else 1.0
     for from_s, goal, over_s in steps:
         if t_s >= from_s:

@@ -57,13 +57,13 @@ def publish_body(
     confidence, uncertainty_m = np.zeros(N_JOINTS), np.full(N_JOINTS, np.inf)
     unfiltered = None
     if state.whole is not None and clothes is not None:
-        unfiltered, uncertainty_m = _placed(clothes.fitter, motion, state.whole)
+        unfiltered, uncertainty_m = _pose_with_uncertainty(clothes.fitter, motion, state.whole)
         away_of_whole_s = seconds(t_ns - state.whole_ns)
         n = len(state.cameras)
         confidence = confidence_by_clothes(state.whole, n, uncertainty_m, away_of_whole_s)
     if state.by_shirt and state.trunk is not None and shirt is not None:
         upper = upper_body_state(motion, shirt.model)
-        by_trunk, of_trunk_m = _placed(shirt.fitter, upper, state.trunk)
+        by_trunk, of_trunk_m = _pose_with_uncertainty(shirt.fitter, upper, state.trunk)
         unfiltered = by_trunk if unfiltered is None else unfiltered
         by_it = confidence_by_shirt(state.trunk, len(state.cameras), of_trunk_m, away_s)
         lower = _LOWER_JOINTS if state.whole is not None else np.empty(0, np.int64)
@@ -100,7 +100,7 @@ def publish_body(
     return Track(body, shape, quality)
 
 
-def _placed(fitter: Fitter, motion: MotionState, fit: Fit) -> tuple[Pose, Floats]:
+def _pose_with_uncertainty(fitter: Fitter, motion: MotionState, fit: Fit) -> tuple[Pose, Floats]:
     """The pose, and one standard deviation of each joint's position (J,) [m]."""
     joints_m, globals_xyzw = fitter.joints(motion)
     uncertainty_m = joint_uncertainty_m(

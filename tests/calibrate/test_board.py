@@ -12,7 +12,7 @@ from mocapd.calibrate.board.board_detection import BoardDetector, Reason, settle
 from mocapd.calibrate.board.detection_diagnostics import diagnose_detection
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, board_size, corners_m
 from mocapd.errors import ConfigError
-from mocapd.sim.board.board_picture import BoardFilm, BoardLight, PrintedBoard, printed
+from mocapd.sim.board.board_picture import BoardFilm, BoardLight, PrintedBoard, print_picture
 from mocapd.types import Bytes
 from tests.calibrate.board_scenes import PRINT, cameras, corners_px, held_poses
 
@@ -119,7 +119,7 @@ def test_the_simulated_print_is_the_board_as_others_print_it(
 ) -> None:
     spec = replace(SPEC, columns=columns, rows=rows, marker_m=0.0525, legacy=legacy)
     theirs = aruco_board(spec).generateImage((columns * 24, rows * 24), marginSize=0)
-    ours = printed(PrintedBoard(columns, rows, 0.07, 0.0525, spec.dictionary, legacy=legacy))
+    ours = print_picture(PrintedBoard(columns, rows, 0.07, 0.0525, spec.dictionary, legacy=legacy))
     np.testing.assert_array_equal(ours > 0, theirs > 0)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mocapd.geometry.camera_model import normalised
-from mocapd.sim.board.board_picture import BoardFilm, PrintedBoard, printed
+from mocapd.sim.board.board_picture import BoardFilm, PrintedBoard, print_picture
 from mocapd.types import Floats
 from tests.calibrate.board_scenes import cameras, held_poses
 
@@ -25,7 +25,7 @@ def naive(pixels: Floats, R: Floats, t_m: Floats, board: PrintedBoard) -> tuple[
     inside = sheet & (x >= 0) & (y >= 0) & (x < board.columns) & (y < board.rows)
     light = np.where(sheet, INK if board.inverted else PAPER, 0.0)
     if eye[2] < 0:  # before the printed side
-        cell = printed(board)[
+        cell = print_picture(board)[
             (np.clip(y, 0, board.rows - 0.01) * 24).astype(int),
             (np.clip(x, 0, board.columns - 0.01) * 24).astype(int),
         ]

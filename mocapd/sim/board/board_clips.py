@@ -8,7 +8,13 @@ from pathlib import Path
 
 import msgspec
 
-from mocapd.sim.board.board_path import BoardPlace, between, floor_place, lens_places, room_places
+from mocapd.sim.board.board_path import (
+    BoardPlace,
+    floor_place,
+    interpolate,
+    lens_places,
+    room_places,
+)
 from mocapd.sim.board.board_shots import BoardShots
 from mocapd.sim.cache_file import read_or_make
 from mocapd.sim.clips import Clip
@@ -74,7 +80,9 @@ def _shots(places: Sequence[BoardPlace | None]) -> list[tuple[BoardPlace | None,
     for a, b in pairwise([*places, places[0]]):
         out.append((a, _STILL_PICTURES))
         if a is not None and b is not None and a is not b:
-            out += [(between(a, b, (k + 0.5) / _MOVE_PICTURES), 1) for k in range(_MOVE_PICTURES)]
+            out += [
+                (interpolate(a, b, (k + 0.5) / _MOVE_PICTURES), 1) for k in range(_MOVE_PICTURES)
+            ]
     return out
 
 

@@ -44,7 +44,7 @@ class BoardPlace:
         return R, self.middle_m - R @ half
 
 
-def between(a: BoardPlace, b: BoardPlace, u: float) -> BoardPlace:
+def interpolate(a: BoardPlace, b: BoardPlace, u: float) -> BoardPlace:
     """On the way from a (u = 0) to b (u = 1), starting and ending at rest."""
     s = u * u * (3.0 - 2.0 * u)
     return BoardPlace(
@@ -67,7 +67,7 @@ def lens_places(cameras: Sequence[Camera]) -> list[BoardPlace]:
                 rotations.from_matrix(axes) for axes in (camera.R.T, _facing(middle, eye))
             )
             facing = rotations.slerp(own, shared, _LENS_SHARED)
-            places.append(_placed(middle, facing, np.array(turns_deg, dtype=float)))
+            places.append(_place_of(middle, facing, np.array(turns_deg, dtype=float)))
     return places
 
 
@@ -78,7 +78,7 @@ def room_places(cameras: Sequence[Camera]) -> list[BoardPlace]:
     for x, y, z, *turns_deg in _ROOM_PLACES:
         middle = np.array([x, y, z])
         facing = rotations.from_matrix(_facing(middle, eye))
-        places.append(_placed(middle, facing, np.array(turns_deg, dtype=float)))
+        places.append(_place_of(middle, facing, np.array(turns_deg, dtype=float)))
     return places
 
 
@@ -97,7 +97,7 @@ def _facing(middle_m: Floats, eye_m: Floats) -> Floats:
     return np.stack([right, np.cross(away, right), away], axis=-1)
 
 
-def _placed(middle_m: Floats, facing_xyzw: Floats, turns_deg: Floats) -> BoardPlace:
+def _place_of(middle_m: Floats, facing_xyzw: Floats, turns_deg: Floats) -> BoardPlace:
     pitch, yaw, roll = (
         rotations.exp(np.radians(angle) * axis)
         for angle, axis in zip(turns_deg, np.eye(3), strict=True)

@@ -53,7 +53,7 @@ class BoardLight:
     brightness: float = 1.0
 
 
-def printed(board: PrintedBoard) -> Bytes:
+def print_picture(board: PrintedBoard) -> Bytes:
     """The print as a picture with `_CELLS` pixels a square and no margin: 1 paper, 0 ink."""
     first_white = board.legacy and board.rows % 2 == 0
     rows, columns = np.indices((board.rows, board.columns))
@@ -95,7 +95,7 @@ class BoardFilm:
         self._down: Floats = np.gradient(self._rays, axis=0)
         self._across: Floats = np.gradient(self._rays, axis=1)
         self._board = board
-        self._print = printed(board)
+        self._print = print_picture(board)
 
     def picture(
         self, R: Floats, t_m: Floats, light: BoardLight | None = None, seed: int = 0
@@ -121,7 +121,7 @@ class BoardFilm:
         """The sheet at world_from_board R (3,3), t_m (3,), to be laid over another picture."""
         camera_R = self._camera.R @ R
         camera_t = self._camera.R @ t_m + self._camera.t_m
-        # the front is seen when the board's z points away from the camera
+        # the camera sees the front if the board's z points away from it
         front = bool(camera_R[:, 2] @ camera_t > 0.0)
         if self._board.two_sided and not front:
             camera_R, camera_t = self._behind(camera_R, camera_t)
@@ -137,7 +137,7 @@ class BoardFilm:
         return BoardLayer(region, cover, light)
 
     def _behind(self, R: Floats, t_m: Floats) -> tuple[Floats, Floats]:
-        """camera_from_back of the camera_from_board R, t_m: seen from behind, the print is mirrored."""
+        """camera_from_back of the camera_from_board R, t_m: from behind, the print is mirrored."""
         board = self._board
         c, s = np.cos(board.back_turn_rad), np.sin(board.back_turn_rad)
         turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

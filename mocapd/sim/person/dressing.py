@@ -115,7 +115,7 @@ def jacket_height(
 
 
 def joined_dresses(dresses: list[Dress]) -> Dress:
-    """Of several people whose meshes lie one after the other."""
+    """One dress for several people with concatenated meshes."""
     if len(dresses) == 1:
         return dresses[0]
     joined = Dress(*(np.concatenate(arrays) for arrays in zip(*dresses, strict=True)))

@@ -19,7 +19,7 @@ from mocapd.sim.person.subdivision import FineSurface, subdivide
 from mocapd.sim.person_spec import Clothes
 from mocapd.types import Floats, Pose, Skeleton
 
-_BONES = 4  # skin weights kept per vertex
+_BONES = 4  # largest skin weights per vertex
 
 
 @dataclass(frozen=True, slots=True, eq=False)

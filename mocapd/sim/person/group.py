@@ -16,7 +16,7 @@ from mocapd.types import Bytes, Floats, Pose
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PersonBody:
-    """How somebody is at one instant. jacket: how far it is on, 0..1; screen: on which they are shown, if any."""
+    """One person at one instant. jacket: how far it is on, 0..1; screen: that shows the person, if any."""
 
     pose: Pose
     jacket: float = 0.0
@@ -54,7 +54,7 @@ def posed_group(group: Group, bodies: Sequence[PersonBody]) -> Floats:
     return posed[0] if len(posed) == 1 else np.concatenate(posed)
 
 
-def patches_seen(figure: Figure, jacket: float) -> Bytes:
+def visible_patches(figure: Figure, jacket: float) -> Bytes:
     """The shirt's patch of each triangle (T,), 0 also where the jacket is over it."""
     if jacket <= 0.0:
         return figure.patch

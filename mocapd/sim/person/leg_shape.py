@@ -39,7 +39,7 @@ def leg_rotations(
 
 
 def _axes(along: Floats, forward: Floats) -> Floats:
-    """Columns x y z of the frame whose y is `along` and whose z is next to `forward`."""
+    """Columns x y z of a frame with y along `along` and z nearest to `forward`."""
     y = along / math.sqrt(along @ along)
     z = forward - (forward @ y) * y
     z /= math.sqrt(z @ z)

@@ -62,11 +62,13 @@ def compile_motion(scenario: Scenario, skeleton: Skeleton) -> Motion:
         ),
         sway=sway,
         feet=foot_tracks(root_of_t, skeleton, loop_s, turn),
-        lifted=_lifted(keys, times, loop_s),
+        lifted=_foot_offsets(keys, times, loop_s),
     )
 
 
-def _lifted(keys: list[PoseKeyframe], times: Floats, loop_s: float) -> "PchipInterpolator | None":
+def _foot_offsets(
+    keys: list[PoseKeyframe], times: Floats, loop_s: float
+) -> "PchipInterpolator | None":
     """Where the keyframes place the feet themselves; None: nowhere."""
     feet = [(key.left_foot_m, key.right_foot_m) for key in keys]
     if not any(place is not None for both in feet for place in both):
@@ -98,7 +100,7 @@ def pose_at(motion: Motion, t_s: float) -> Pose:
     return Pose(root, rotations.canonical(quats))
 
 
-def standing_pose(skeleton: Skeleton, pose: str, heading_rad: float) -> Pose:
+def upright_pose(skeleton: Skeleton, pose: str, heading_rad: float) -> Pose:
     """One of POSES at the origin, with straight legs."""
     local = rotations.exp(local_rotvecs(PoseKeyframe(t_s=0.0, pose=pose)))
     local[0] = rotations.exp(np.array([0.0, heading_rad, 0.0]))

@@ -1,16 +1,16 @@
-"""Somebody who is not in the room but on its television: as large as the screen makes them, and flat."""
+"""A person on a television in the room: flat, and scaled to the screen."""
 
 import numpy as np
 
 from mocapd.sim.person_spec import Screen
 from mocapd.types import Floats
 
-_DEEP = 0.02  # of a body's depth is left, so that what is in front stays there
-_BEFORE_M = 0.02  # before the wall, and whatever the screen hangs on
+_DEEP = 0.02  # share of a body's depth that remains, so that its surface keeps its order
+_BEFORE_M = 0.02  # distance in front of the wall or stand
 
 
 def on_screen(points_m: Floats, screen: Screen) -> Floats:
-    """Where points (N,3) of a scene whose floor has its middle at the origin are shown (N,3) [m, world]."""
+    """Screen positions (N,3) [m, world] of points (N,3) of a scene centred on its floor."""
     yaw = np.radians(screen.yaw_deg)
     right = np.array([np.cos(yaw), 0.0, -np.sin(yaw)])
     ahead = np.array([np.sin(yaw), 0.0, np.cos(yaw)])

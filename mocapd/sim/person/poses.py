@@ -19,13 +19,13 @@ class NamedPose:
     crouch_m: float = 0.0
 
 
-def _mirrored(arm: ArmDirections) -> ArmDirections:
+def _mirror(arm: ArmDirections) -> ArmDirections:
     (ux, uy, uz), (fx, fy, fz) = arm
     return (-ux, uy, uz), (-fx, fy, fz)
 
 
 def _both(arm: ArmDirections, bend_deg: float = 0.0, crouch_m: float = 0.0) -> NamedPose:
-    return NamedPose(arm, _mirrored(arm), bend_deg, crouch_m)
+    return NamedPose(arm, _mirror(arm), bend_deg, crouch_m)
 
 
 _DOWN: ArmDirections = ((0.20, -1.0, -0.02), (0.12, -1.0, 0.22))
@@ -54,14 +54,14 @@ POSES = {
     "guard": _both(_GUARD, crouch_m=0.06),
     "clap": _both(_CLAP),
     "star": _both(_DIAGONAL_UP),
-    "wave_left": NamedPose(_WAVE, _mirrored(_DOWN)),
-    "wave_right": NamedPose(_DOWN, _mirrored(_WAVE)),
-    "crossed": NamedPose(_CROSS_HIGH, _mirrored(_CROSS_LOW)),
-    "reach_left": NamedPose(_REACH, _mirrored(_DOWN)),
-    "reach_right": NamedPose(_DOWN, _mirrored(_REACH)),
-    "archer": NamedPose(_OUT, _mirrored(_CLAP)),
-    "diagonal": NamedPose(_DIAGONAL_UP, _mirrored(_DIAGONAL_DOWN)),
-    "hand_on_belly": NamedPose(_DOWN, _mirrored(_BELLY)),
+    "wave_left": NamedPose(_WAVE, _mirror(_DOWN)),
+    "wave_right": NamedPose(_DOWN, _mirror(_WAVE)),
+    "crossed": NamedPose(_CROSS_HIGH, _mirror(_CROSS_LOW)),
+    "reach_left": NamedPose(_REACH, _mirror(_DOWN)),
+    "reach_right": NamedPose(_DOWN, _mirror(_REACH)),
+    "archer": NamedPose(_OUT, _mirror(_CLAP)),
+    "diagonal": NamedPose(_DIAGONAL_UP, _mirror(_DIAGONAL_DOWN)),
+    "hand_on_belly": NamedPose(_DOWN, _mirror(_BELLY)),
     "bow": _both(((0.15, -0.9, 0.45), (0.05, -0.95, 0.35)), bend_deg=30.0, crouch_m=0.03),
-    "lunge": NamedPose(_FORWARD, _mirrored(_GOALPOST), bend_deg=8.0, crouch_m=0.10),
+    "lunge": NamedPose(_FORWARD, _mirror(_GOALPOST), bend_deg=8.0, crouch_m=0.10),
 }

@@ -150,10 +150,10 @@ def _build(thing: Thing, lamp: int, rng: np.random.Generator) -> list[_Piece]:
         local = [
             _Piece((0, h / 2, 0), (w, h, d), 0.0, thing.srgb, thing.pattern, kind, thing.glow, lamp)
         ]
-    return [_placed(piece, thing) for piece in local]
+    return [_in_room(piece, thing) for piece in local]
 
 
-def _placed(piece: _Piece, thing: Thing) -> _Piece:
+def _in_room(piece: _Piece, thing: Thing) -> _Piece:
     yaw = np.radians(thing.yaw_deg)
     c, s = np.cos(yaw), np.sin(yaw)
     x, y, z = piece.middle_m
