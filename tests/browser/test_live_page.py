@@ -10,7 +10,7 @@ from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.clock import monotonic_ns
 from mocapd.pipeline.slowness import Slowness
 from mocapd.web.server import WebServer
-from tests.browser.conftest import problems_of
+from tests.browser.conftest import FOR_THE_DOCS, problems_of
 from tests.clients.canned_daemon import canned_sample
 from tests.web.tiny_host import TinyHost
 
@@ -42,11 +42,12 @@ def test_figure_and_listeners_read_well(page: Page, host: TinyHost, pictures: Pa
     show_pictures(host)
     expect(page.locator("#live-outputs")).to_contain_text("Not sent", timeout=WAIT_MS)
     expect(page.locator("#live-outputs")).not_to_contain_text("Refused")
-    page.wait_for_timeout(800)
+    page.wait_for_timeout(800 if FOR_THE_DOCS else 100)
     for name, size in SIZES.items():
         page.set_viewport_size(size)
-        page.wait_for_timeout(700)
-        page.screenshot(path=pictures / f"live-{name}.png")
+        page.wait_for_timeout(700 if FOR_THE_DOCS else 100)
+        if FOR_THE_DOCS:
+            page.screenshot(path=pictures / f"live-{name}.png")
 
 
 def test_a_machine_that_is_too_slow_is_said_with_what_helps(

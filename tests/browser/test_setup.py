@@ -142,12 +142,14 @@ def page(browser: Browser, pictures: Path) -> Iterator[Page]:
 
 @pytest.fixture(scope="module")
 def setup(served: Served, page: Page, pictures: Path, cache_home: Path) -> Setup:
-    """One way through the whole setup; screenshots of each step as it is done."""
+    """One way through the whole setup; for the docs, screenshots of each step as it is done."""
     by_hand = truth_strokes("cam1", cache_home)
     out = Setup(served.state_dir / "calibration.toml", heard=problems_of(page))
     began = time.monotonic()
 
     def shoot(name: str) -> None:
+        if not FOR_THE_DOCS:  # a browser without a graphics card takes a second for each
+            return
         page.screenshot(path=pictures / f"setup_{name}.jpg", full_page=True, quality=80)
 
     def finished(step: str) -> None:
@@ -169,7 +171,7 @@ def setup(served: Served, page: Page, pictures: Path, cache_home: Path) -> Setup
     shown(page, "lens")
     if FOR_THE_DOCS:  # a picture of the step while views are collected
         page.wait_for_timeout(6000)
-        shoot("lens")
+    shoot("lens")
     done(page)
     finished("lens")
     page.locator("#next").focus()

@@ -1,6 +1,5 @@
 """Two cameras that have changed places are told by the room, however symmetrically they stand; the dark tells nothing."""
 
-from functools import cache
 from typing import Any
 
 import cv2
@@ -15,6 +14,7 @@ from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.world import World
 from mocapd.types import Bytes, Camera
 from tests.sim import small
+from tests.sim.kept_film import kept
 
 THINGS: list[dict[str, Any]] = [
     {"kind": "bookshelf", "base_m": [-0.9, 0.0, -1.6], "size_m": [1.0, 1.9, 0.3]},
@@ -24,7 +24,7 @@ THINGS: list[dict[str, Any]] = [
 STANDS = {"close": 0.06, "symmetrical": 0.5}  # to the left and right of the middle [m]
 
 
-@cache
+@kept
 def room(stand: str) -> tuple[tuple[Camera, Camera], tuple[Bytes, Bytes]]:
     """Two cameras of 640x480, and what they see of a furnished room with somebody in it."""
     table = small.table(room={"things": THINGS})

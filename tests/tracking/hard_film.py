@@ -1,7 +1,6 @@
 """Scenes that mislead a tracker without the shirt, rendered once each: faces that are nobody's, and somebody else."""
 
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 from mocapd.calibration.calibration_record import Calibration
@@ -10,6 +9,7 @@ from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
 from mocapd.types import Floats, Frame, FrameSet
 from tests.sim import small
+from tests.sim.kept_film import kept
 from tests.sim.simulated_calibration import calibration_of_setup
 
 START_NS = 50_000_000_000_000
@@ -62,7 +62,7 @@ class HardFilm:
     joints_m: list[Floats | None]
 
 
-@cache
+@kept
 def hard_film(scene: str) -> HardFilm:
     """Two cameras of 320x240 whose views cross, in steady light; 90 frames of one of SCENES."""
     table: dict[str, Any] = small.table()

@@ -1,7 +1,6 @@
 """Somebody in plain clothes in a small room that was seen empty before, rendered once, and the truth."""
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
 from mocapd.types import Bytes, Floats, Frame, FrameSet
 from tests.sim import small
+from tests.sim.kept_film import kept
 from tests.sim.simulated_calibration import calibration_of_setup
 
 START_NS = 50_000_000_000_000
@@ -36,7 +36,7 @@ def _sets(pictures: list[dict[str, Bytes]], first: int) -> list[FrameSet]:
     return out
 
 
-@cache
+@kept
 def plain_film(to_m: tuple[float, float] = (0.1, 0.1)) -> PlainFilm:
     """Two cameras of 320x240 whose views cross, in steady light; the person goes as far as to_m (x, z), the arms raised."""
     table = small.table()

@@ -33,6 +33,7 @@ from tests.calibrate.two_sided_scene import (
     turned_poses,
     view_of,
 )
+from tests.sim.kept_film import kept
 from tests.wizard.board_pictures import EMPTY, draft_cameras
 from tests.wizard.context import FakeContext
 
@@ -49,19 +50,28 @@ def film(camera: int) -> BoardFilm:
 @cache
 def pictures(place: int) -> dict[str, Bytes]:
     """What the cameras see of one place, the last of which is the floor; the wearer hides it from one."""
-    pose = [*POSES, lying()][place]
-    return {
-        camera.name: never_written(film(c).picture(*pose, seed=100 * c + place))
-        for c, camera in enumerate(RIG)
-        if c != hidden_from(place)
-    }
+    return {name: never_written(one.copy()) for name, one in drawn()[place].items()}
 
 
 @cache
 def upside_down() -> dict[str, Bytes]:
     """The board on the floor with its back up."""
+    return {name: never_written(one.copy()) for name, one in drawn()[-1].items()}
+
+
+@kept
+def drawn() -> list[dict[str, Bytes]]:
+    """What the cameras see of each place, and of the floor with the back up."""
+    places = [
+        {
+            camera.name: film(c).picture(*pose, seed=100 * c + place)
+            for c, camera in enumerate(RIG)
+            if c != hidden_from(place)
+        }
+        for place, pose in enumerate([*POSES, lying()])
+    ]
     R, t_m = turned_over(lying())
-    return {one.name: never_written(film(c).picture(R, t_m)) for c, one in enumerate(RIG)}
+    return [*places, {one.name: film(c).picture(R, t_m) for c, one in enumerate(RIG)}]
 
 
 class Around:
