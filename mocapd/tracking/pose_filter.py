@@ -57,10 +57,10 @@ class BoneGains:
 # without the shirt: at equal confidence an arm's error and jumps are twice those of a leg
 _CLOTHES = {
     "trunk": BoneGains(1.6, 0.25, 0.25, 5.4),
-    "upper_arm": BoneGains(1.1, 0.0, 0.17, 3.0, power=3.0),
-    "forearm": BoneGains(1.1, 0.0, 0.15, 4.0, power=3.0),
-    "thigh": BoneGains(2.5, 0.2, 0.43, 9.5),
-    "shank": BoneGains(2.0, 0.15, 0.3, 8.5),
+    "upper_arm": BoneGains(1.1, 0.0, 0.17, 3.0, power=1.5),
+    "forearm": BoneGains(1.1, 0.0, 0.15, 4.0, power=1.5),
+    "thigh": BoneGains(2.0, 0.2, 0.43, 9.5),
+    "shank": BoneGains(1.6, 0.15, 0.3, 8.5),
 }
 # the shirt's colours mistake arms less, and its trunk hardly ever: it is found to 0.3 mm and 2 mrad of where it stays
 _SHIRT_ARM = BoneGains(
