@@ -18,8 +18,8 @@ _LEAST_SHARE = 0.3  # of a patch that is of one surface
 _FLAT = np.float32(0.03)  # length of a patch less its mean; what has less is of one grey
 
 
-class Surface(NamedTuple):
-    """Surface labels of a picture: label (h,w) of blocks of block_px pixels each way, beginning at block `left`, `top`; 0:
+class PatchLabels(NamedTuple):
+    """Surfaces in a picture: label (h,w) of blocks of block_px pixels each way, beginning at block `left`, `top`; 0:
     unknown. The texture of a surface shows its distance; its outline lies farther, where it curves away. (0,0): whole patches
     are compared."""
 
@@ -126,7 +126,7 @@ def match_along_rays(
     least_contrast: float,
     apart: int,
     least_ahead: float,
-    surface: Surface,
+    surfaces: PatchLabels,
     place: Array,
     alike: Array,
 ) -> None:
@@ -136,13 +136,13 @@ def match_along_rays(
     in the other, NaN for none; half: at most 7. Fills place (N,), 0..K-1 between places, and alike (N,), the correlation
     there; alike is -1 where the patch has less contrast (standard deviation, grey values), the best place is at an end,
     or it is not ahead by least_ahead of all places that are `apart` or more from it. Only those pixels of a patch count that
-    have the label of its middle, see `Surface`.
+    have the label of its middle, see `PatchLabels`.
     """
     side = 2 * half + 1
     mine, within = np.zeros((side, _LANES), np.float32), np.zeros((side, _LANES), np.float32)
     within[:, :side] = 1.0
     count = np.float32(side * side)
-    labels, left, top, block_px = surface
+    labels, left, top, block_px = surfaces
     rows, columns = labels.shape
     own, its = grey.ravel(), other.ravel()
     n_places = there_px.shape[1]
@@ -189,4 +189,4 @@ def match_along_rays(
         place[n], alike[n] = best + min(max(beside, -0.5), 0.5), scores[best]
 
 
-EVERYWHERE = Surface(np.zeros((0, 0), np.uint8), 0, 0, 1)
+EVERYWHERE = PatchLabels(np.zeros((0, 0), np.uint8), 0, 0, 1)

@@ -5,7 +5,7 @@ import pytest
 
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Bytes, Camera, Floats
-from mocapd.vision.ray_matching_kernels import EVERYWHERE, Surface, match_along_rays
+from mocapd.vision.ray_matching_kernels import EVERYWHERE, PatchLabels, match_along_rays
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
@@ -135,10 +135,10 @@ def test_only_the_surface_of_the_middle_counts_not_what_shows_beside_it() -> Non
     at = np.array([[40.0, 40.0]])
     there = at[:, None] + np.stack([np.arange(-4.0, 5.0), np.zeros(9)], axis=1)
     place, alike = np.empty(1), np.empty(1)
-    surfaces = {2.0: Surface(on, 0, 0, 1), 0.0: EVERYWHERE}
+    surfaces = {2.0: PatchLabels(on, 0, 0, 1), 0.0: EVERYWHERE}
     for moved, surface in surfaces.items():
         match_along_rays(grey, other, at, there, 6, 4.0, *ANY, surface, place, alike)
         assert abs(place[0] - 4.0 - moved) < 0.6
-    nothing = Surface(np.zeros_like(on), 0, 0, 1)
+    nothing = PatchLabels(np.zeros_like(on), 0, 0, 1)
     match_along_rays(grey, other, at, there, 6, 4.0, *ANY, nothing, place, alike)
     assert alike[0] == -1.0

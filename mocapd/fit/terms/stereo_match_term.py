@@ -17,7 +17,7 @@ from mocapd.fit.terms.map_sampling_kernels import N_GROUPS, N_PARTS, spread_over
 from mocapd.fit.work_rays import rays_at, work_rays_in_world
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Bytes, Camera, Ints
-from mocapd.vision.ray_matching_kernels import Surface, match_along_rays
+from mocapd.vision.ray_matching_kernels import PatchLabels, match_along_rays
 
 _INSIDE = np.ones((3, 3), np.uint8)  # a part as drawn may be off by a work pixel
 _EDGE_PX = 2  # work pixels from the body's edge: nearer, a patch holds more of what is behind
@@ -72,11 +72,11 @@ def measured_distances(
     shown_on_rays(camera_arrays(other), origin, along, expected_m[:, None] + offsets_m, there)
     place, alike = np.empty(len(y)), np.empty(len(y))
 
-    surface = _surface(drawn, m.part, corner, scale)
+    labels = _part_labels(drawn, m.part, corner, scale)
 
     def match(mine: slice) -> None:
         match_along_rays(
-            *greys, pixels[mine], there[mine], p.half_px, p.least_contrast, p.places, 0.0, surface, place[mine], alike[mine]
+            *greys, pixels[mine], there[mine], p.half_px, p.least_contrast, p.places, 0.0, labels, place[mine], alike[mine]
         )  # fmt: skip
 
     half = len(y) // 2
@@ -88,17 +88,17 @@ def measured_distances(
     )
 
 
-def _surface(
+def _part_labels(
     drawn: tuple[Bytes, NDArray[np.int32]],
     part: NDArray[np.uint8],
     corner: tuple[int, int],
     image_scale: int,
-) -> Surface:
+) -> PatchLabels:
     """The inside of each part of the body as drawn, away from its outline."""
     ids, triangles = drawn
     label = np.where(ids > 0, part[np.maximum(triangles, 0)] + np.uint8(1), np.uint8(0))
     label[cv2.erode(label, _INSIDE) != cv2.dilate(label, _INSIDE)] = 0
-    return Surface(label, *corner, image_scale)
+    return PatchLabels(label, *corner, image_scale)
 
 
 def _samples(
