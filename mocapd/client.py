@@ -11,7 +11,6 @@ towards +X; rotations xyzw.
 
 import asyncio
 import atexit
-import json
 import math
 import time
 from collections.abc import AsyncIterator, Iterator, Mapping
@@ -23,16 +22,14 @@ import zenoh
 
 from mocapd.bus.zenoh_answers import MOST_ANSWERS_BYTES, limited_answers
 from mocapd.bus.zenoh_calls import hold_session, zenoh_call
-from mocapd.bus.zenoh_client_config import client_config
-from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.messages import Health, RestSkeleton, decode_health, decode_rest_skeleton
 from mocapd.outputs.prediction.pose_predictor import PosePredictor
 from mocapd.outputs.zenoh import keys
+from mocapd.outputs.zenoh.daemon_link import ENDPOINT, Link, connect, connect_async
 
-ENDPOINT = "tcp/127.0.0.1:7447"
-RETRY_S = 0.2  # pause between two attempts to connect [s]
-ATTEMPT_S = 1.0  # how long one attempt may take [s]
+__all__ = ("ENDPOINT", "Body", "Client", "JointPose", "Link", "astream", "connect", "stream")
+
 POLL_S = 0.002  # how often `Client.wait` looks [s]
 _RING_FRAMES = 8  # queued frames, from which `predict` estimates the motion
 
@@ -104,47 +101,6 @@ class Body:
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.frame.joints)
-
-
-@dataclass(frozen=True, slots=True)
-class Link:
-    """Address of the daemon and selection of its messages.
-
-    endpoint: Zenoh endpoint of the daemon, or of the router it joined
-    instance: name of the daemon; `*`: any
-    person: number of the person
-    connect_timeout_s: how long to try to find a daemon [s]; None: for ever
-    tls_root_ca: PEM file, for a `tls/` endpoint
-    user, password: for a daemon with a password file
-    certificate, private_key: PEM files of this program, for a daemon with `zenoh.tls_require_client`
-    typed_options: the user gives endpoint and instance as options of a command line, so errors name them `--endpoint`
-    """
-
-    endpoint: str = ENDPOINT
-    instance: str = keys.ANY
-    person: int = 0
-    connect_timeout_s: float | None = 2.0
-    tls_root_ca: str = ""
-    user: str = ""
-    password: str = ""
-    certificate: str = ""
-    private_key: str = ""
-    typed_options: bool = False
-
-    @property
-    def key(self) -> str:
-        """The key of the frames."""
-        return keys.skeleton(self.instance, self.person)
-
-    @property
-    def health_key(self) -> str:
-        """The key of the health messages."""
-        return keys.health(self.instance)
-
-    @property
-    def rest_key(self) -> str:
-        """The key of the rest skeleton."""
-        return keys.rest_skeleton(self.instance, self.person)
 
 
 class Client:
@@ -298,83 +254,10 @@ async def astream(
 
     # indirect=False: Zenoh would start a Python thread that blocks the interpreter's exit
     handler = zenoh.handlers.Callback(on_sample, indirect=False)
-    with await _aconnect(link) as session, session.declare_subscriber(link.key, handler):
+    with await connect_async(link) as session, session.declare_subscriber(link.key, handler):
         while True:
             yield _body(await newest.get())
 
 
 def _body(sample: zenoh.Sample) -> Body:
     return Body(wire.decode(sample.payload.to_bytes(), str(sample.encoding)))
-
-
-def connect(link: Link) -> zenoh.Session:
-    """Opens a session on which a mocapd is alive, for callers with their own subscribers; retries until the timeout.
-
-    Raises UnavailableError.
-    """
-    started_s = time.monotonic()
-    while True:
-        try:
-            with zenoh_call():
-                return _attempt(link)
-        except UnavailableError:
-            if _is_over(link, started_s):
-                raise
-        time.sleep(RETRY_S)
-
-
-async def _aconnect(link: Link) -> zenoh.Session:
-    """As `connect`; can be cancelled between attempts."""
-    started_s = time.monotonic()
-    while True:
-        try:
-            return await asyncio.to_thread(_attempt, link)
-        except UnavailableError:
-            if _is_over(link, started_s):
-                raise
-        await asyncio.sleep(RETRY_S)
-
-
-def _is_over(link: Link, started_s: float) -> bool:
-    limit_s = link.connect_timeout_s
-    return limit_s is not None and time.monotonic() - started_s + RETRY_S > limit_s
-
-
-def _attempt(link: Link) -> zenoh.Session:
-    limit_s = link.connect_timeout_s
-    config = client_config(
-        link.endpoint,
-        timeout_s=ATTEMPT_S if limit_s is None else min(ATTEMPT_S, limit_s),
-        tls_root_ca=link.tls_root_ca,
-        user=link.user,
-        password=link.password,
-        certificate=link.certificate,
-        private_key=link.private_key,
-    )
-    try:
-        session = zenoh.open(zenoh.Config.from_json5(json.dumps(config)))
-        hold_session(session)
-    except zenoh.ZError as error:
-        raise UnavailableError(
-            f"no mocapd at {link.endpoint}",
-            fix=f"start `mocapd run` or pass {_option(link, 'endpoint')}"
-            # a refused login looks like silence to Zenoh
-            + ("; check tls_root_ca, user and password too" if _has_secrets(link) else ""),
-        ) from error
-    token = keys.alive(link.instance)
-    if any(reply.ok for reply in session.liveliness().get(token, timeout=ATTEMPT_S)):
-        return session
-    with session:
-        raise UnavailableError(
-            f"no mocapd at {link.endpoint}: a Zenoh node answers, but without {token}",
-            fix="start `mocapd run` (zenoh.connect joins that node) or pass "
-            f"{_option(link, 'endpoint')} or {_option(link, 'instance')}",
-        )
-
-
-def _option(link: Link, name: str) -> str:
-    return f"--{name}" if link.typed_options else f"{name}="
-
-
-def _has_secrets(link: Link) -> bool:
-    return bool(link.tls_root_ca or link.user) or not link.endpoint.startswith("tcp/")

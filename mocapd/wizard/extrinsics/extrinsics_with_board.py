@@ -33,6 +33,7 @@ from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import ExtrinsicsQuality
+from mocapd.wizard.extrinsics.board_request import board_request
 from mocapd.wizard.extrinsics.extrinsics_verbs import BOARD_ROOM, Floor, SkipFloor, Solve
 from mocapd.wizard.extrinsics.rig_plan import plan_of, quality_of
 from mocapd.wizard.step import Json, Scene, StepState, StepView, Tell
@@ -288,19 +289,8 @@ class ExtrinsicsWithBoard:
         if self._solving:
             return "Working out where the cameras stand. You can go on showing the board."
         apart = self._collection.apart()
-        if apart and len(self._cameras) > 2:
-            name = self._names[apart[0]]
-            sides = ", from either side" if self._spec.two_sided else ""
-            return (
-                f"Hold the board where {name} and another camera see it{sides}; "
-                "keep it still for a moment."
-            )
-        if self._spec.two_sided:
-            return (
-                "Hold the board where cameras see it together, from either side, here and there, and turn "
-                "it over now and then; keep it still each time."
-            )
-        return "Hold the board where the cameras see it together, here and there; keep it still each time."
+        lonely = self._names[apart[0]] if apart and len(self._cameras) > 2 else None
+        return board_request(self._spec.two_sided, lonely)
 
     def _progress(self) -> float:
         if self._stage is BoardPhase.DONE:
