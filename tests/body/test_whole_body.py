@@ -6,7 +6,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from mocapd.body.arrays import PosedJoints, plain
-from mocapd.body.derivative_kernels import joint_shape_derivatives, surface_row
+from mocapd.body.derivative_kernels import surface_row
 from mocapd.body.joint_limit_kernels import limit_residuals
 from mocapd.body.joint_limits import from_swing_twist, soft_limit
 from mocapd.body.model import build_model, shape_of, shaped
@@ -198,26 +198,21 @@ def test_rows_of_legs_and_head_equal_central_differences(part: int) -> None:
     factors = 1.0 + 0.1 * rng.uniform(-1.0, 1.0, N)
     vertices, rest = shaped(MODEL, factors)
     posed = kinematics(rest, root, local)
-    d_joints = np.zeros((N, N_JOINTS, 3))
-    joint_shape_derivatives(MODEL.parents, MODEL.d_rest, posed.R, d_joints)
-    moving = np.zeros(MODEL.n_pose + N, bool)
+    moving = np.zeros(MODEL.n_pose, bool)
     for t in rng.choice(np.flatnonzero(MODEL.part == part), 8, replace=False):
         g = rng.normal(size=3)
         g /= np.linalg.norm(g)
         corners = MODEL.triangles[t]
-        row = np.full(MODEL.n_pose + N, np.nan)
+        row = np.full(MODEL.n_pose, np.nan)
         surface_row(
             vertices[corners].mean(axis=0), MODEL.triangle_bones[t], MODEL.triangle_weights[t],
-            MODEL.d_centres[:, t], g, plain(MODEL.articulation), plain(posed), d_joints, row,
+            g, plain(MODEL.articulation), plain(posed), row,
         )  # fmt: skip
         wanted = np.empty_like(row)
         for k in range(len(row)):
             step = np.zeros(len(row))
             step[k] = STEP
-            ends = [
-                point_m(t, *moved(root, local, s[: MODEL.n_pose]), factors + s[MODEL.n_pose :])
-                for s in (-step, step)
-            ]
+            ends = [point_m(t, *moved(root, local, s), factors) for s in (-step, step)]
             wanted[k] = g @ (ends[1] - ends[0]) / (2 * STEP)
         np.testing.assert_allclose(row, wanted, atol=TOLERANCE)
         moving |= np.abs(row) > 1e-3
@@ -237,7 +232,6 @@ def solved(points_m: Floats, start: tuple[Floats, Floats], rounds: int) -> tuple
     beside = np.array([0.06, 0.05, 0.07])
     P, G = SPACE.n_pose, len(SPACE.groups)
     row, residual, slope = np.empty(P), np.empty((G, 3)), np.empty((G, 3, 3))
-    none, no_joints = np.empty((0, 3)), np.empty((0, N_JOINTS, 3))
     for _ in range(rounds):
         posed = kinematics(MODEL.rest_m, root, local)
         H, b = 1e-6 * np.eye(P), np.zeros(P)
@@ -247,8 +241,7 @@ def solved(points_m: Floats, start: tuple[Floats, Floats], rounds: int) -> tuple
             here = posed.joints[j] + posed.R[j] @ (point - MODEL.rest_m[j])
             for axis in np.eye(3):
                 surface_row(
-                    point, np.array([j], np.int32), np.ones(1), none, axis,
-                    plain(MODEL.articulation), plain(posed), no_joints, row,
+                    point, np.array([j], np.int32), np.ones(1), axis, plain(MODEL.articulation), plain(posed), row,
                 )  # fmt: skip
                 H += np.outer(row, row)
                 b += row * float(axis @ (wanted - here))

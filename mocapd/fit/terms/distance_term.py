@@ -6,7 +6,7 @@ the surface with stereo points; here each point has the triangle it was predicte
 
 from dataclasses import dataclass
 
-from mocapd.body.arrays import PosedJoints
+from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.shaping import Shaped
 from mocapd.fit.terms.point_rows_kernels import pull_along_rays
@@ -41,7 +41,6 @@ class DistanceTerm:
         m, points = self._model, self._measured
         cost: float = pull_along_rays(
             points.triangle, points.origin_m, points.rays, points.distance_m, self._information, _ROBUST_M,
-            body.centres, m.triangle_bones, m.triangle_weights, body.rest, m.parents,
-            m.joint_of_group, m.group_of_joint, m.share_of_joint, posed.R, posed.joints, H, b,
+            body.centres, plain(m.surface), plain(m.articulation), plain(posed), H, b,
         )  # fmt: skip
         return cost

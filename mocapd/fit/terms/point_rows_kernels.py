@@ -4,8 +4,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from mocapd.body.arrays import Articulation, PosedJoints
-from mocapd.body.derivative_kernels import joint_row, surface_row_of_arrays
+from mocapd.body.arrays import Articulation, PosedJoints, TriangleArrays
+from mocapd.body.derivative_kernels import joint_row, surface_row
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -100,15 +100,9 @@ def pull_along_rays(
     information: Array,
     robust_m: float,
     centres: Array,
-    triangle_bones: NDArray[np.int32],
-    triangle_weights: Array,
-    rest: Array,
-    parents: Ints,
-    joint_of_group: Ints,
-    group_of_joint: Ints,
-    share_of_joint: Array,
-    R: Array,
-    joints: Array,
+    surface: TriangleArrays,
+    articulation: Articulation,
+    posed: PosedJoints,
     H: Array,
     b: Array,
 ) -> float:
@@ -116,9 +110,9 @@ def pull_along_rays(
 
     A residual of robust_m has a quarter of its weight (Geman-McClure). centres (T,3) of the triangles in the T-pose.
     """
-    nothing = np.zeros((0, 3))
-    no_rest = np.zeros((0, rest.shape[0], 3))
-    row = np.empty(3 + 3 * joint_of_group.shape[0])
+    _, triangle_bones, triangle_weights, _ = surface
+    rest, R, joints, _ = posed
+    row = np.empty(3 + 3 * articulation[3].shape[0])
     cost = 0.0
     for n in range(triangle.shape[0]):
         t = triangle[n]
@@ -135,10 +129,9 @@ def pull_along_rays(
                 along += wt * rays[n, i] * (place - origin[i])
         residual = distance_m[n] - along
         trust = 1.0 / (1.0 + (residual / robust_m) ** 2)
-        surface_row_of_arrays(
-            centres[t], triangle_bones[t], triangle_weights[t], nothing, rays[n], rest, parents,
-            joint_of_group, group_of_joint, share_of_joint, R, joints, no_rest, no_rest, 0, row,
-        )  # fmt: skip
+        surface_row(
+            centres[t], triangle_bones[t], triangle_weights[t], rays[n], articulation, posed, row
+        )
         add_row(row, residual, information[n] * trust * trust, H, b)
         cost += information[n] * residual * residual * trust
     return cost

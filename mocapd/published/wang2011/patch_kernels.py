@@ -117,7 +117,6 @@ def centroid_rows(
     row = np.empty(columns)
     g = np.empty(3)
     world, seen = np.empty(3), np.empty(3)
-    no_shape, no_joints = np.empty((0, 3)), np.empty((0, rest.shape[0], 3))
     out[:] = 0.0
     for t in range(samples.shape[0]):
         p = patch[t]
@@ -141,8 +140,6 @@ def centroid_rows(
             f = fx if axis == 0 else fy
             for k in range(3):
                 g[k] = f / z * (cam_R[axis, k] - seen[axis] / z * cam_R[2, k])
-            surface_row(
-                points[t], bones[t], weights[t], no_shape, g, articulation, posed, no_joints, row,
-            )  # fmt: skip
+            surface_row(points[t], bones[t], weights[t], g, articulation, posed, row)
             for k in range(columns):
                 out[p, axis, k] += share * row[k]
