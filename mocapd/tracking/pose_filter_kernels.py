@@ -67,7 +67,7 @@ def follow_bones(
     """Fill out_xyzw (J,4) with bones gap_s after last_xyzw (J,4) on their way to found_xyzw (J,4); turning_rad_s (J,3) goes
     from how they turned to how they turn, memory (J,5) as that of `moving_share` does.
 
-    trust (J,): in each bone's direction; following (8,J): the numbers of a `Following`, for each bone; ticks: gap_s in usual
+    trust (J,): in each bone's direction; following (8,J): the numbers of `BoneGains`, for each bone; ticks: gap_s in usual
     frames; learns: see `PoseFilterParams`. Fills follows and learned (J,): the shares of the way, and of a new speed, that
     they take of steady motion.
     """
