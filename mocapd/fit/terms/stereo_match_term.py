@@ -71,7 +71,6 @@ def measured_distances(
     there = np.empty((len(y), p.places, 2))
     shown_on_rays(camera_arrays(other), origin, along, expected_m[:, None] + offsets_m, there)
     place, alike = np.empty(len(y)), np.empty(len(y))
-
     labels = _part_labels(drawn, m.part, corner, scale)
 
     def match(mine: slice) -> None:
