@@ -41,16 +41,6 @@ def _no_leg_search(params: ClothesParams) -> ClothesParams:
     return replace(params, legs=never, limb_swap=swap)
 
 
-def _no_faces(params: ClothesParams) -> ClothesParams:
-    face = replace(params.flip.face, sure=float("inf"))
-    return replace(params, flip=replace(params.flip, face=face))
-
-
-def _no_turns(params: ClothesParams) -> ClothesParams:
-    flip_test = replace(params.flip.flip_test, sure=float("inf"))
-    return replace(params, flip=replace(params.flip, flip_test=flip_test))
-
-
 def _no_shadows(params: ClothesParams) -> ClothesParams:
     return replace(params, background=replace(params.background, likely_shadow=(1.0, 0.0)))
 
@@ -73,8 +63,6 @@ CLOTHES_ABLATIONS: Mapping[str, Callable[[ClothesParams], ClothesParams]] = Mapp
         "no arm search": _no_arm_search,
         "no shadows": _no_shadows,
         "no leg search": _no_leg_search,
-        "no faces": _no_faces,
-        "no turns": _no_turns,
         "no look-alikes": _no_look_alikes,
         "no limits": _no_limits,
     }

@@ -27,7 +27,10 @@ def callees(function: PythonFunction) -> tuple[Dispatcher, ...]:
 @cache
 def content_of(function: PythonFunction) -> str:
     """A hash of everything that the compiled code of a kernel follows from; comments, lines and its file's place are
-    not of it. numba itself looks at the kernel's own file alone, and would run the old code of a changed callee."""
+    not of it. numba itself looks at the kernel's own file alone, and would run the old code of a changed callee.
+
+    The named tuples that it takes are of it with their modules: numba cannot read code compiled for one that has moved.
+    """
     digest = hashlib.sha256()
     for line in _decorator(function.__code__):
         digest.update(line.encode())
@@ -36,6 +39,8 @@ def content_of(function: PythonFunction) -> str:
         plain = [one for one in constants if not isinstance(one, CodeType)]
         digest.update(code.co_code)
         digest.update(repr((plain, code.co_names, code.co_varnames)).encode())
+    for named in _named_tuples(function):
+        digest.update(_content(named, function).encode())
     for name, value in _globals_of(function):
         digest.update(f"{name}={_content(value, function)}\n".encode())
     return digest.hexdigest()
@@ -56,6 +61,14 @@ def _content(value: Any, function: PythonFunction) -> str:
         if isinstance(value, int | float | complex | str | tuple | np.generic)
         else str(type(value))
     )
+
+
+def _named_tuples(annotated: Any) -> Iterator[type]:
+    """Those that a function takes, or that a named tuple holds, with theirs in turn."""
+    for value in annotated.__annotations__.values():
+        if isinstance(value, type) and hasattr(value, "_fields"):
+            yield value
+            yield from _named_tuples(value)
 
 
 def _globals_of(function: PythonFunction) -> Iterator[tuple[str, Any]]:

@@ -15,7 +15,6 @@ from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.tracking.tracker_inputs import calibrated_rig, stature_m
 from mocapd.tracking.tracking_state import TrackingStateParams
-from mocapd.vision.face.lbp_cascade import frontal_faces
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +44,7 @@ def build_body_tracker(
     rig, stature = calibrated_rig(calibration), stature_m(calibration)
     by_shirt = by_clothes = backgrounds = None
     if clothes:
-        by_clothes = ClothesCue(rig, stature, p.clothes, frontal_faces(), each, now_ns)
+        by_clothes = ClothesCue(rig, stature, p.clothes, each, now_ns)
         backgrounds = [camera.background for camera in by_clothes.cameras.each]
     if database is not None:
         shirt = calibration.shirt or ShirtColours()

@@ -71,7 +71,7 @@ def publish_body(
         confidence, uncertainty_m = by_it, of_trunk_m
     assert unfiltered is not None
     carrier = _carrier(state)
-    jumped = _bones(state.changed) if away_s == 0.0 else ()
+    jumped = _doubtful_bones(state, motion, estimates, clothes) if away_s == 0.0 else ()
     skeleton = skeleton_of(shape)
     pose = pose_filter.step(
         unfiltered, confidence, t_ns, carrier, state.by_shirt, skeleton, jumped, state.legs_since_ns
@@ -117,6 +117,17 @@ def _carrier(state: TrackState) -> str:
         if carries
     ]
     return "+".join(cues)
+
+
+def _doubtful_bones(
+    state: TrackState, motion: MotionState, estimates: CueEstimates, clothes: ClothesCue | None
+) -> tuple[int, ...]:
+    """Bones found elsewhere that may be elsewhere still: not where the views of clothes cross, which hide no depth."""
+    found = estimates.clothes
+    if clothes is None or found is None or state.by_shirt:
+        return _bones(state.changed)
+    small = clothes.fitter.has_small_baseline(motion, found.views)
+    return _bones(state.changed) if small else ()
 
 
 def _bones(parts: Sequence[str]) -> tuple[int, ...]:

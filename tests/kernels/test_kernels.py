@@ -5,7 +5,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
@@ -14,7 +14,7 @@ import pytest
 from mocapd.body.arrays import SkinArrays
 from mocapd.body.posing_kernels import quat_exp
 from mocapd.errors import MalformedError
-from mocapd.kernels.callees import _codes, _global_names
+from mocapd.kernels.callees import _codes, _global_names, content_of
 from mocapd.kernels.kernel_table import callees_of_rows, read_table, rows_of
 from mocapd.kernels.locator import KernelLocator
 from mocapd.kernels.type_codes import decode, encode
@@ -82,6 +82,24 @@ def test_code_is_kept_until_a_kernel_or_one_that_it_calls_changes(tmp_path: Path
     assert kernels.said(term="(x + 1.0)") == "8.0 scaled twice"
     assert kernels.said(option=", fastmath=True") == "6.0 twice"
     assert kernels.said() == "6.0"  # an earlier version's is there still
+
+
+def test_code_is_not_kept_for_a_named_tuple_that_has_moved() -> None:
+    def made_of(module: str) -> Any:
+        class Inner(NamedTuple):
+            x: float
+
+        class Outer(NamedTuple):
+            inner: Inner
+
+        def kernel(one: Outer) -> float:
+            return one.inner.x
+
+        Inner.__module__ = module
+        return kernel
+
+    assert content_of(made_of("a")) == content_of(made_of("a"))
+    assert content_of(made_of("a")) != content_of(made_of("b"))
 
 
 def test_code_of_versions_that_are_gone_is_removed(

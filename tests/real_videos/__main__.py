@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.evaluate.tables import number, table
-from mocapd.vision.face.lbp_cascade import frontal_faces
+from mocapd.published.hecht2009.face.lbp_cascade import frontal_faces
 from tests.real_videos.beam import INSIDE, NEAR_PX, SCALE, STATURE_M, BeamWalk, beam_walk
 from tests.real_videos.contact_sheet import write_sheet
 from tests.real_videos.signing import SigningClip, signing_clip

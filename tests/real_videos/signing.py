@@ -11,11 +11,11 @@ from mocapd.capture.file import FileSource
 from mocapd.clock import seconds
 from mocapd.errors import EndOfStream
 from mocapd.geometry.nominal_rig import nominal_rig
+from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
 from mocapd.published.hecht2009.head.head_shape import ellipse_of, head_size
 from mocapd.published.hecht2009.head.head_track import HeadPicture, HeadTrack
 from mocapd.published.hecht2009.head.head_tracker import HeadTracker
 from mocapd.types import Bytes, Camera, Frame
-from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 from tests.real_videos.contact_sheet import LEFT, MIDDLE
 
 STATURE_M = 1.70  # not known of these people; with one camera it scales the distance alone

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mocapd.geometry.camera_model import centre
-from mocapd.vision.face.lbp_cascade import frontal_faces
+from mocapd.published.hecht2009.face.lbp_cascade import frontal_faces
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE
 from tests.conftest import ABSENT, SHARED
 from tests.real_videos.beam import CAMERAS, SCALE, beam_rig, beam_walk, share_inside

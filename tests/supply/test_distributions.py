@@ -44,7 +44,7 @@ def test_the_wheel_holds_every_file_of_the_package_and_of_calib(wheel: Path) -> 
     for one in (
         *("systemd/mocapd.service", "systemd/sandbox.conf", "calib/scenarios/living_room.toml"),
         *("calib/shirt_standard_v1.json", "web/page/index.html", "web/page/live.js"),
-        "vision/face/lbpcascade_frontalface.xml",
+        "published/hecht2009/face/lbpcascade_frontalface.xml",
     ):
         assert f"mocapd/{one}" in held
 

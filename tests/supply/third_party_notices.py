@@ -64,8 +64,8 @@ _BESIDES = """
 the CMU Graphics Lab Motion Capture Database: "The data used in this project was obtained from mocap.cs.cmu.edu. The database
 was created with funding from NSF EIA-0196217."
 
-`mocapd/vision/face/lbpcascade_frontalface.xml` is OpenCV's cascade of frontal faces, unchanged but for a note at its head
-(Copyright OpenCV Foundation and contributors, Apache License 2.0).
+`mocapd/published/hecht2009/face/lbpcascade_frontalface.xml` is OpenCV's cascade of frontal faces, unchanged but for a
+note at its head (Copyright OpenCV Foundation and contributors, Apache License 2.0).
 """
 
 

@@ -1,11 +1,11 @@
 """Builds the published tracker from the calibration."""
 
 from mocapd.calibration.calibration_record import Calibration
+from mocapd.published.hecht2009.face.lbp_cascade import frontal_faces
 from mocapd.published.hecht2009.params import Params
 from mocapd.published.hecht2009.tracker import Hecht2009Tracker
 from mocapd.tracking.tracker_inputs import calibrated_rig, stature_m
 from mocapd.tracking.tracking_state import TrackingStateParams
-from mocapd.vision.face.lbp_cascade import frontal_faces
 
 
 def build_hecht2009_tracker(

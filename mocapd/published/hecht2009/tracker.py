@@ -23,6 +23,7 @@ from mocapd.published.hecht2009.edge_penalties import (
     radii_m,
 )
 from mocapd.published.hecht2009.evidence import RigEvidence
+from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
 from mocapd.published.hecht2009.hanging_body import HangingBody, hang
 from mocapd.published.hecht2009.head.head_track import HeadState, HeadTrack
 from mocapd.published.hecht2009.head.head_tracker import HeadTracker
@@ -56,7 +57,6 @@ from mocapd.tracking.tracking_state import (
     grow_uncertainty,
 )
 from mocapd.types import BodyState, Floats, FrameSet, Rig, Tracking
-from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 _NEVER_S = 1e9
 
@@ -88,7 +88,7 @@ class Hecht2009Tracker:
         params: Params | None = None,
         tracking: TrackingStateParams | None = None,
     ) -> None:
-        """cascade: of frontal faces, see `vision.face.lbp_cascade`."""
+        """cascade: of frontal faces, see `face.lbp_cascade`."""
         self.params = p = params if params is not None else Params()
         self.rig = rig
         self._stature_m = stature_m

@@ -43,14 +43,12 @@ class HypothesisContext:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ScoredFit:
-    """A fit with its views and terms. changed: parts found away from their prediction; tried: True if alternatives were
-    fitted."""
+    """A fit with its views and terms. changed: parts found away from their prediction."""
 
     fit: Fit
     views: Sequence[View]
     terms: Sequence[Term]
     changed: tuple[str, ...] = ()
-    tried: bool = False
 
 
 class PoseHypothesis(Protocol):

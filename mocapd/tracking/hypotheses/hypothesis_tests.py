@@ -4,27 +4,21 @@ from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.hypotheses.base import HypothesisContext, PoseHypothesis, ScoredFit
 from mocapd.tracking.hypotheses.foot_heading import FootHeading
-from mocapd.tracking.hypotheses.front_back_flip import FrontBackFlip
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 from mocapd.tracking.hypotheses.limb_poses import ArmPoses, LegPoses
 from mocapd.tracking.hypotheses.limb_swap import LimbSwap
-from mocapd.tracking.hypotheses.pelvis_heading import PelvisHeading
-from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 
 class HypothesisTests:
     """All hypotheses, in an order where an earlier one may make a later one needless."""
 
-    def __init__(self, params: ClothesParams, stature_m: float, cascade: CascadeArrays) -> None:
-        """cascade: of frontal faces."""
+    def __init__(self, params: ClothesParams) -> None:
         self._always: dict[str, PoseHypothesis] = {
             "keypoint_poses": KeypointPoses(params.keypoint_poses),
-            "pelvis_heading": PelvisHeading(params.pelvis_heading),
             "foot_heading": FootHeading(params.foot_heading),
         }
         self._searched: dict[str, PoseHypothesis] = {
-            "arm_poses": ArmPoses(params.limbs),
-            "front_back_flip": FrontBackFlip(params.flip, stature_m, cascade),
+            "arm_poses": ArmPoses(),
             "leg_poses": LegPoses(),
             "limb_swap": LimbSwap(params.limb_swap),
         }

@@ -5,7 +5,6 @@ pose: with the classification of the predicted pose, an arm before a trunk of it
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -77,7 +76,7 @@ def best_start(
     def cost_of(fit: Fit) -> float:
         return float(joints.costs(fitter.joints(fit.state)[0]).sum())
 
-    best = replace(now, tried=True) if starts else now
+    best = now
     for start, changed in starts:
         views = at.evidence.classify(start)
         if len(views) < len(now.views):
@@ -91,5 +90,5 @@ def best_start(
         if WHOLE in changed:  # started by the keypoints: the pictures must confirm it without them
             gain -= cost_of(now.fit) - cost_of(fit)
         if gain > gained:
-            best, gained = ScoredFit(fit, views, terms, changed, tried=True), gain
+            best, gained = ScoredFit(fit, views, terms, changed), gain
     return best

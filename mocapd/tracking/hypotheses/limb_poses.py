@@ -2,17 +2,11 @@
 
 from dataclasses import replace
 
-from mocapd.body.pose_space import SIDES
-from mocapd.fit.fit_params import LimbSearchParams
-from mocapd.fit.limbs.arm_search import is_uncertain
 from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
 
 
 class ArmPoses:
     """Other arms, where no trunk leads that knows them; see PoseHypothesis."""
-
-    def __init__(self, params: LimbSearchParams) -> None:
-        self._params = params
 
     def reset(self) -> None:
         """See PoseHypothesis."""
@@ -25,12 +19,11 @@ class ArmPoses:
         """See PoseHypothesis."""
         if at.trunk_prior is not None:
             return now
-        tried = now.tried or any(is_uncertain(side, now.fit, self._params) for side in SIDES)
         fit, sides = at.solvers.arms.improve(
             now.fit, now.views, at.dt_s, at.ticks.frame_index, now.terms
         )
         changed = (*now.changed, *(f"{side}_arm" for side in sides))
-        return replace(now, fit=fit, changed=changed, tried=tried)
+        return replace(now, fit=fit, changed=changed)
 
 
 class LegPoses:

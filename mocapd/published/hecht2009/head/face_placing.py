@@ -9,6 +9,8 @@ import numpy as np
 from mocapd.body.head_proportions import FACE_WIDTH
 from mocapd.geometry.camera_model import normalised, project, to_camera
 from mocapd.geometry.triangulation import triangulate
+from mocapd.published.hecht2009.face.face_detection import FaceBox, face_windows, group_windows
+from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
 from mocapd.published.hecht2009.head.head_params import HeadParams
 from mocapd.published.hecht2009.head.head_shape import head_size
 from mocapd.published.hecht2009.head.head_views import HeadView, have_baseline, ray_through
@@ -18,8 +20,6 @@ from mocapd.published.hecht2009.head.stereo_distance import (
     view_angle_rad,
 )
 from mocapd.types import Floats
-from mocapd.vision.face.face_detection import FaceBox, face_windows, group_windows
-from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 _PATCH = 0.45  # of the box's side: the face without its outline
 

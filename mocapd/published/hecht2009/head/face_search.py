@@ -12,6 +12,15 @@ import cv2
 import numpy as np
 
 from mocapd.body.head_proportions import FACE_WIDTH
+from mocapd.published.hecht2009.face.face_detection import (
+    STEP,
+    FaceBox,
+    face_sizes,
+    face_windows,
+    faces_near,
+    group_windows,
+)
+from mocapd.published.hecht2009.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays
 from mocapd.published.hecht2009.head.face_placing import (
     Depth,
     PlacedFace,
@@ -21,15 +30,6 @@ from mocapd.published.hecht2009.head.face_placing import (
 from mocapd.published.hecht2009.head.head_params import HeadParams
 from mocapd.published.hecht2009.head.head_views import HeadView
 from mocapd.types import Bytes
-from mocapd.vision.face.face_detection import (
-    STEP,
-    FaceBox,
-    face_sizes,
-    face_windows,
-    faces_near,
-    group_windows,
-)
-from mocapd.vision.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays
 
 _WINDOWS = 36_000  # classified in one step: 4 ms
 _LEAST_PX = 21.0  # of a face, with the picture enlarged a little

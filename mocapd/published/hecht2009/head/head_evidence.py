@@ -7,6 +7,8 @@ import numpy as np
 
 from mocapd.body.head_proportions import FACE_WIDTH
 from mocapd.geometry.camera_model import centre, to_camera
+from mocapd.published.hecht2009.face.face_detection import FaceBox, faces_near
+from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
 from mocapd.published.hecht2009.head.face_placing import PlacedFace
 from mocapd.published.hecht2009.head.head_cloud import Cloud, along_ray, at_distance
 from mocapd.published.hecht2009.head.head_colours import (
@@ -29,8 +31,6 @@ from mocapd.published.hecht2009.head.stereo_distance import (
     view_angle_rad,
 )
 from mocapd.types import Bytes, Floats
-from mocapd.vision.face.face_detection import FaceBox, faces_near
-from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 _REACH = 0.5  # of the face's side: search radius about the predicted place
 _SAME = 0.7  # of the face's side: a face farther away belongs to another head

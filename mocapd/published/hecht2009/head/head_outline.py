@@ -12,6 +12,7 @@ import numpy as np
 from mocapd.body.head_proportions import FACE_WIDTH
 from mocapd.geometry.camera_model import centre, normalised
 from mocapd.geometry.triangulation import triangulate
+from mocapd.published.hecht2009.face.face_detection import FaceBox
 from mocapd.published.hecht2009.head.face_placing import Depth, PlacedFace
 from mocapd.published.hecht2009.head.head_colours import initial_colours
 from mocapd.published.hecht2009.head.head_params import HeadParams
@@ -25,7 +26,6 @@ from mocapd.published.hecht2009.head.stereo_distance import (
     view_angle_rad,
 )
 from mocapd.types import Floats
-from mocapd.vision.face.face_detection import FaceBox
 
 _SMALL = 4  # by which the foreground is reduced
 _LEAST_SHARE = 0.01  # of a person in the picture

@@ -5,8 +5,8 @@ from enum import StrEnum
 
 import numpy as np
 
+from mocapd.published.hecht2009.face.face_detection import FaceBox
 from mocapd.types import Bytes, Floats
-from mocapd.vision.face.face_detection import FaceBox
 
 
 class HeadState(StrEnum):

@@ -12,6 +12,8 @@ import numpy as np
 
 from mocapd.body.arrays import camera_arrays
 from mocapd.geometry.camera_model import centre, project
+from mocapd.published.hecht2009.face.face_detection import FaceBox
+from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
 from mocapd.published.hecht2009.head.face_placing import Depth, PlacedFace
 from mocapd.published.hecht2009.head.face_search import FaceCandidate, FaceSearch
 from mocapd.published.hecht2009.head.head_cloud import (
@@ -39,8 +41,6 @@ from mocapd.published.hecht2009.head.head_track import (
 )
 from mocapd.published.hecht2009.head.head_views import HeadView, have_baseline, head_views
 from mocapd.types import Camera, Floats
-from mocapd.vision.face.face_detection import FaceBox
-from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 _START_ACROSS = 0.25  # of the box's side: spread of the first particles across the ray
 _SEARCH_AGAIN_S = 1.0  # without its face before the search for another one starts

@@ -27,7 +27,6 @@ from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import BodyShapeEstimate, TrackState
 from mocapd.types import Bytes, FrameSet, Rig
-from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 _DEPTHS, _JOINTS = 0, 1  # what alternates; also the look is learned in frames that look for joints
 
@@ -42,13 +41,12 @@ class ClothesCue:
         rig: Rig,
         stature_m: float,
         params: ClothesParams | None = None,
-        cascade: CascadeArrays | None = None,
         each: Each = in_turn,
         now_ns: Callable[[], int] = frozen_clock,
     ) -> None:
-        """cascade, each: see `ClothesSolver`; now_ns: see `registry.Resources`."""
+        """now_ns: see `registry.Resources`."""
         self.params = p = params if params is not None else ClothesParams()
-        self._solver = solver = ClothesSolver(rig, stature_m, p, cascade, each)
+        self._solver = solver = ClothesSolver(rig, stature_m, p, each)
         self.cameras, self.model = solver.cameras, solver.model
         self._search = PersonSearch(
             solver.silhouettes, solver.terms.floor, solver.terms.joints, solver.cameras, rig.cameras, p.start,

@@ -10,10 +10,8 @@ from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
 from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
 from mocapd.tracking.hypotheses.foot_heading import FootHeadingParams
-from mocapd.tracking.hypotheses.front_back_flip import FlipParams
 from mocapd.tracking.hypotheses.keypoint_starts import KeypointPoseParams
 from mocapd.tracking.hypotheses.limb_swap import LimbSwapParams
-from mocapd.tracking.hypotheses.pelvis_heading import PelvisHeadingParams
 from mocapd.tracking.planted_feet import PlantedFeetParams
 from mocapd.tracking.velocity import VelocityParams
 from mocapd.vision.room_background import BackgroundParams
@@ -115,12 +113,10 @@ class ClothesParams:
     floor: FloorParams = field(default_factory=FloorParams)
     planted: PlantedParams = field(default_factory=PlantedParams)
     feet: PlantedFeetParams = field(default_factory=PlantedFeetParams)
-    flip: FlipParams = field(default_factory=FlipParams)
     limb_swap: LimbSwapParams = field(default_factory=LimbSwapParams)
     depths: StereoDepthParams = field(default_factory=StereoDepthParams)
     joints: KeypointDetectionParams = field(default_factory=KeypointDetectionParams)
     keypoint_poses: KeypointPoseParams = field(default_factory=KeypointPoseParams)
-    pelvis_heading: PelvisHeadingParams = field(default_factory=PelvisHeadingParams)
     foot_heading: FootHeadingParams = field(default_factory=FootHeadingParams)
     distances: StereoMatchParams = field(
         default_factory=lambda: StereoMatchParams(points=10, leg_points=24)

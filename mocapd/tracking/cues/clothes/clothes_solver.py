@@ -41,8 +41,6 @@ from mocapd.tracking.track_state import (
 )
 from mocapd.tracking.velocity import velocity_between
 from mocapd.types import Floats, Frame, FrameSet, Rig
-from mocapd.vision.face.lbp_cascade import blind_cascade
-from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
 
 # their stereo distances are measured below a trunk that the shirt places
 _LOWER_REGIONS = (Region.LEG, Region.FOOT)
@@ -76,10 +74,8 @@ class ClothesSolver:
         rig: Rig,
         stature_m: float,
         params: ClothesParams,
-        cascade: CascadeArrays | None = None,
         each: Each = in_turn,
     ) -> None:
-        """cascade: of frontal faces, see `vision.face.lbp_cascade`; None: faces tell nothing."""
         self.params = p = params
         self._rig = rig
         self.model = model = build_model(stature_m, full_body())
@@ -89,7 +85,7 @@ class ClothesSolver:
         self.silhouettes = Fitter(model, silhouette_labels(model), rig.cameras, scales, p.fit, each)
         self.terms = PoseTerms(self.model, len(rig.cameras), p)
         self.cameras = CameraViews(self.fitter, p)
-        self._hypotheses = HypothesisTests(p, stature_m, cascade or blind_cascade())
+        self._hypotheses = HypothesisTests(p)
         self._feet = PlantedFeet(self.model.rest_m, p.feet)
         self.work = OptionalWork()
 

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from mocapd.body.head_proportions import MIDDLE
+from mocapd.published.hecht2009.face.lbp_cascade import blind_cascade, read_cascade
+from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
 from mocapd.published.hecht2009.head.head_shape import face_of, joint_of, yaw_rotation
 from mocapd.published.hecht2009.head.head_track import (
     HeadPicture,
@@ -16,10 +18,8 @@ from mocapd.published.hecht2009.head.head_track import (
 )
 from mocapd.published.hecht2009.head.head_tracker import HeadTracker
 from mocapd.types import Bytes, Camera, Floats
-from mocapd.vision.face.lbp_cascade import blind_cascade, read_cascade
-from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
+from tests.published.hecht2009.face.toy_face import write_cascade
 from tests.published.hecht2009.head.ball_scene import Ball, camera, narrow_pair, picture, wide_pair
-from tests.vision.toy_face import write_cascade
 
 STATURE_M = 1.75
 DT_S = 1 / 30

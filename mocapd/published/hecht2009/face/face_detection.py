@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from mocapd.published.hecht2009.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays, scan
 from mocapd.types import Bytes, Floats
-from mocapd.vision.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays, scan
 
 SCALE_STEP = 1.2  # of neighbouring sizes; the cascade bears a tenth either way
 _MOST_WINDOWS = 4096

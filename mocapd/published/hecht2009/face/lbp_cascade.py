@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from mocapd.vision.face.lbp_cascade_kernels import CascadeArrays
+from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
 
 _FILE = Path(__file__).with_name("lbpcascade_frontalface.xml")
 

@@ -9,16 +9,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from mocapd.types import Bytes
-from mocapd.vision.face.face_detection import (
+from mocapd.published.hecht2009.face.face_detection import (
     face_sizes,
     face_windows,
     faces_near,
     group_windows,
 )
-from mocapd.vision.face.lbp_cascade import frontal_faces, read_cascade
-from mocapd.vision.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays, lbp_code, scan
-from tests.vision.toy_face import write_cascade
+from mocapd.published.hecht2009.face.lbp_cascade import frontal_faces, read_cascade
+from mocapd.published.hecht2009.face.lbp_cascade_kernels import (
+    WINDOW_PX,
+    CascadeArrays,
+    lbp_code,
+    scan,
+)
+from mocapd.types import Bytes
+from tests.published.hecht2009.face.toy_face import write_cascade
 
 
 @pytest.fixture(scope="module")

@@ -1,1 +1,0 @@
-"""Face detection as evidence of the facing direction."""
