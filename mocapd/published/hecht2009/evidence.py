@@ -16,6 +16,7 @@ from mocapd.published.hecht2009.head.head_track import HeadPicture
 from mocapd.published.hecht2009.mass_spring.frusta import NAMES
 from mocapd.published.hecht2009.motion_edges import MotionEdges, WorkPicture
 from mocapd.published.hecht2009.params import Params
+from mocapd.published.hecht2009.part_samples import PartSamples, samples_of
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig, Singles
 from mocapd.vision.foreground_kernels import SHADOW, UNKNOWN
 from mocapd.vision.frame_size import check_frame_size
@@ -134,20 +135,15 @@ class CameraEvidence:
             self._params.score.hidden_by_m,
         )  # fmt: skip
 
-    def share_before(self, ends_m: Floats) -> Floats:
-        """The share (C,) of each part's axis (C,2,3) [m] on the foreground, 0..1; NaN without a background."""
+    def count_samples(self, ends_m: Floats) -> PartSamples:
+        """The samples on each part's axis (C,2,3) [m], by what they show in this picture."""
         along = ends_m[:, :1] + _ALONG[:, None] * (ends_m[:, 1:] - ends_m[:, :1])
         xy = (project(self.camera, along.reshape(-1, 3)) + 0.5) * self._scale
         w, h = self._size_px
         inside = np.asarray(np.isfinite(xy).all(axis=1))
         inside &= (np.nan_to_num(xy) >= 0.0).all(axis=1) & (np.nan_to_num(xy) < (w, h)).all(axis=1)
         at = np.where(inside[:, None], np.nan_to_num(xy), 0.0).astype(int)
-        there = self.before[at[:, 1], at[:, 0]]
-        inside &= there != UNKNOWN
-        hit = (there > 0) & (there != SHADOW) & inside
-        inside, hit = inside.reshape(-1, len(_ALONG)), hit.reshape(-1, len(_ALONG))
-        counted = inside.sum(axis=1)
-        return np.where(counted > 0, hit.sum(axis=1) / np.maximum(counted, 1), np.nan)
+        return samples_of(self.before[at[:, 1], at[:, 0]], inside, len(_ALONG))
 
 
 class RigEvidence:
@@ -185,9 +181,7 @@ class RigEvidence:
         """The cameras of the last frame set."""
         return [view for view in self.each if view.present]
 
-    def share_before(self, ends_m: Floats) -> Floats:
-        """The share (C,) of each part on the foreground: the mean over cameras with a background; NaN without one."""
-        shares = np.array([view.share_before(ends_m) for view in self.present])
-        seen = np.isfinite(shares)
-        total = np.where(seen, shares, 0.0).sum(axis=0)
-        return np.where(seen.any(axis=0), total / np.maximum(seen.sum(axis=0), 1), np.nan)
+    def count_samples(self, ends_m: Floats) -> PartSamples:
+        """The samples on each part's axis (C,2,3) [m], by what they show in all present pictures."""
+        each = (view.count_samples(ends_m) for view in self.present)
+        return sum(each, PartSamples.none(len(ends_m)))
