@@ -18,8 +18,9 @@ from mocapd.published.hecht2009.motion_edges import MotionEdges, WorkPicture
 from mocapd.published.hecht2009.params import Params
 from mocapd.published.hecht2009.part_samples import PartSamples, samples_of
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig, Singles
-from mocapd.vision.foreground_kernels import SHADOW, UNKNOWN
+from mocapd.vision.foreground_kernels import BACKGROUND, SHADOW, UNKNOWN
 from mocapd.vision.frame_size import check_frame_size
+from mocapd.vision.hidden_room import HiddenRoom, guess_room
 from mocapd.vision.room_background import RoomBackground
 
 _ALONG = (np.arange(6) + 0.5) / 6.0  # sample positions on a part, from start to end
@@ -41,6 +42,7 @@ class CameraEvidence:
         self._body = np.zeros((h, w), np.uint8)
         self._beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
         self._occlusion = allocate_occlusion(len(NAMES), (w, h), params.score.cell_px)
+        self._hidden: HiddenRoom | None = None  # behind an adopted body
         self._pixels: Bytes | None = None
         self.offset_s = 0.0
         self._quads, self._depths_m = np.empty((len(NAMES), 4, 2)), np.empty((len(NAMES), 2))
@@ -50,6 +52,7 @@ class CameraEvidence:
         self.background.reset()
         self.before[:] = 0
         self._body[:] = 0
+        self._hidden = None
         self._pixels = None
 
     @property
@@ -70,8 +73,12 @@ class CameraEvidence:
 
     def update_foreground(self, uncovered: bool) -> None:
         """Update the foreground; uncovered: also move uncovered background (ghosts) into the background model."""
-        self.background.follow_light(self._now.colour, self._body)
+        if self.background.follow_light(self._now.colour, self._body) is not None:
+            self._hidden = None  # the guess is in the light of before
         self.before = self.background.foreground(self._now.colour)
+        if self._hidden is not None:
+            room = self._hidden.is_seen(self._now.colour)
+            self.before[(self.before == UNKNOWN) & room] = BACKGROUND
         if uncovered:
             no_arms = np.zeros_like(self._body)
             self.background.remove_ghosts(self._now.colour, self.before, self._body, no_arms)
@@ -102,8 +109,9 @@ class CameraEvidence:
         self.background.learn(self._now.colour, self._body)
 
     def seed_background(self) -> None:
-        """Initialise the background from the picture outside the marked body."""
+        """Initialise the background from the picture outside the marked body, and guess it behind."""
         self.background.seed(self._now.colour, self._body)
+        self._hidden = guess_room(self._now.colour, self._body, self._params.background.tolerance)
 
     def person(self) -> Bytes:
         """(h,w): 255 on the foreground, dark cloth included, and where the background is unknown."""

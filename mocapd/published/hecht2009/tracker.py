@@ -213,9 +213,9 @@ class Hecht2009Tracker:
         for view in self._views.present:
             view.seed_background()
         self._head.reset(head_middle(self._body, state))
-        clouds = clouds_about(
-            state.points_m, near.uncertainty_m, len(self._views.each), self._rng, p
-        )
+        age_s = max(seconds(frames.t_ns - near.t_ns), 0.0)
+        uncertainty_m = grow_uncertainty(near.uncertainty_m, age_s)
+        clouds = clouds_about(state.points_m, uncertainty_m, len(self._views.each), self._rng, p)
         samples = PartSamples.none(len(NAMES))
         return _TrackedPerson(frames.t_ns, state, clouds, 0.05, samples, 0.0, ())
 

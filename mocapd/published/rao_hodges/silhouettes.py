@@ -6,12 +6,12 @@ import cv2
 import numpy as np
 
 from mocapd.geometry.camera_model import project
-from mocapd.published.rao_hodges.hidden_room import HiddenRoom, guess_room
 from mocapd.published.rao_hodges.params import Params
 from mocapd.tracking.pictures import CameraPicture, Pictures
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig
 from mocapd.vision.foreground_kernels import BACKGROUND, UNKNOWN
 from mocapd.vision.ghost_removal import brightness_edges
+from mocapd.vision.hidden_room import HiddenRoom, guess_room
 from mocapd.vision.room_background import RoomBackground
 
 
@@ -43,7 +43,7 @@ class CameraSilhouette:
             self._hidden = None  # the guess is in the light of before
         self._before = self.background.foreground(self.picture.bgr)
         if self._hidden is not None:
-            room = self._hidden.is_uncovered(self.picture.bgr)
+            room = self._hidden.is_seen(self.picture.bgr)
             self._before[(self._before == UNKNOWN) & room] = BACKGROUND
         if uncovered:
             no_arms = np.zeros_like(self._body)
@@ -86,7 +86,8 @@ class CameraSilhouette:
         """Initialise the background from the picture outside the marked body, and guess it behind."""
         near = np.asarray(cv2.dilate(self._drawn, self._close_margin), np.uint8)
         self.background.seed(self.picture.bgr, near)
-        self._hidden = guess_room(self.picture.bgr, self._body, self._tolerance)
+        guess = guess_room(self.picture.bgr, self._body, self._tolerance)
+        self._hidden = guess.where_hidden(self.picture.bgr)
 
     def edges_at_outline(self) -> tuple[float, float]:
         """The picture's gradient along the marked body's outline, and farther outside of it."""
