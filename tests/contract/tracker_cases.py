@@ -32,14 +32,12 @@ N_BEFORE = 24  # of an empty room, in which a background is learned
 @dataclass(frozen=True)
 class TrackerCase:
     """`person`: in order of time, long enough to become live and stay so; `empty`: nobody in sight; carriers: which
-    cues its bodies may be carried by, none for a tracker that names itself; apart_m: how far bodies may be apart, RMS over
-    the joints, of the same frames from two beginnings, inf where a body that was handed over may be lost again."""
+    cues its bodies may be carried by, none for a tracker that names itself."""
 
     tracker: Stepping
     person: list[FrameSet]
     empty: list[FrameSet]
     carriers: tuple[str, ...] = ()
-    apart_m: float = 0.1
 
 
 def frame_sets(
@@ -148,14 +146,11 @@ def filmed_from_empty(ring: bool = False) -> Filmed:
 
 
 def plain_case(
-    build_tracker: Callable[[Calibration], Tracker],
-    *carriers: str,
-    ring: bool = False,
-    apart_m: float = 0.1,
+    build_tracker: Callable[[Calibration], Tracker], *carriers: str, ring: bool = False
 ) -> TrackerCase:
     shown = filmed_from_empty(ring)
     tracker = Stepping(build_tracker(shown.known), wearer_shape(shown.known))
-    return TrackerCase(tracker, shown.person, shown.empty, carriers, apart_m)
+    return TrackerCase(tracker, shown.person, shown.empty, carriers)
 
 
 # One line per tracker of mocapd.trackers.registry.TRACKERS.
@@ -165,8 +160,6 @@ CASES: Mapping[str, Callable[[], TrackerCase]] = {
     "shirt": lambda: shirt_case(shirt_tracker, "shirt"),
     "wang2011": lambda: shirt_case(build_wang2011_tracker),
     "markerless": lambda: plain_case(markerless_tracker, "clothes"),
-    # its particles lose a body in pictures this small, half a second after it was handed over
-    "hecht2009": lambda: plain_case(build_hecht2009_tracker, apart_m=np.inf),
-    # its particles drift: it is off the truth by as much
-    "rao_hodges": lambda: plain_case(build_rao_hodges_tracker, ring=True, apart_m=0.15),
+    "hecht2009": lambda: plain_case(build_hecht2009_tracker),
+    "rao_hodges": lambda: plain_case(build_rao_hodges_tracker, ring=True),
 }

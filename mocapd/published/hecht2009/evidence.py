@@ -16,9 +16,11 @@ from mocapd.published.hecht2009.head.head_track import HeadPicture
 from mocapd.published.hecht2009.mass_spring.frusta import NAMES
 from mocapd.published.hecht2009.motion_edges import MotionEdges, WorkPicture
 from mocapd.published.hecht2009.params import Params
+from mocapd.published.hecht2009.part_samples import PartSamples, samples_of
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig, Singles
-from mocapd.vision.foreground_kernels import SHADOW, UNKNOWN
+from mocapd.vision.foreground_kernels import BACKGROUND, SHADOW, UNKNOWN
 from mocapd.vision.frame_size import check_frame_size
+from mocapd.vision.hidden_room import HiddenRoom, guess_room
 from mocapd.vision.room_background import RoomBackground
 
 _ALONG = (np.arange(6) + 0.5) / 6.0  # sample positions on a part, from start to end
@@ -40,6 +42,7 @@ class CameraEvidence:
         self._body = np.zeros((h, w), np.uint8)
         self._beside = np.ones((2 * params.beside_px + 1,) * 2, np.uint8)
         self._occlusion = allocate_occlusion(len(NAMES), (w, h), params.score.cell_px)
+        self._hidden: HiddenRoom | None = None  # behind an adopted body
         self._pixels: Bytes | None = None
         self.offset_s = 0.0
         self._quads, self._depths_m = np.empty((len(NAMES), 4, 2)), np.empty((len(NAMES), 2))
@@ -49,6 +52,7 @@ class CameraEvidence:
         self.background.reset()
         self.before[:] = 0
         self._body[:] = 0
+        self._hidden = None
         self._pixels = None
 
     @property
@@ -69,8 +73,12 @@ class CameraEvidence:
 
     def update_foreground(self, uncovered: bool) -> None:
         """Update the foreground; uncovered: also move uncovered background (ghosts) into the background model."""
-        self.background.follow_light(self._now.colour, self._body)
+        if self.background.follow_light(self._now.colour, self._body) is not None:
+            self._hidden = None  # the guess is in the light of before
         self.before = self.background.foreground(self._now.colour)
+        if self._hidden is not None:
+            room = self._hidden.is_seen(self._now.colour)
+            self.before[(self.before == UNKNOWN) & room] = BACKGROUND
         if uncovered:
             no_arms = np.zeros_like(self._body)
             self.background.remove_ghosts(self._now.colour, self.before, self._body, no_arms)
@@ -101,8 +109,9 @@ class CameraEvidence:
         self.background.learn(self._now.colour, self._body)
 
     def seed_background(self) -> None:
-        """Initialise the background from the picture outside the marked body."""
+        """Initialise the background from the picture outside the marked body, and guess it behind."""
         self.background.seed(self._now.colour, self._body)
+        self._hidden = guess_room(self._now.colour, self._body, self._params.background.tolerance)
 
     def person(self) -> Bytes:
         """(h,w): 255 on the foreground, dark cloth included, and where the background is unknown."""
@@ -134,20 +143,15 @@ class CameraEvidence:
             self._params.score.hidden_by_m,
         )  # fmt: skip
 
-    def share_before(self, ends_m: Floats) -> Floats:
-        """The share (C,) of each part's axis (C,2,3) [m] on the foreground, 0..1; NaN without a background."""
+    def count_samples(self, ends_m: Floats) -> PartSamples:
+        """The samples on each part's axis (C,2,3) [m], by what they show in this picture."""
         along = ends_m[:, :1] + _ALONG[:, None] * (ends_m[:, 1:] - ends_m[:, :1])
         xy = (project(self.camera, along.reshape(-1, 3)) + 0.5) * self._scale
         w, h = self._size_px
         inside = np.asarray(np.isfinite(xy).all(axis=1))
         inside &= (np.nan_to_num(xy) >= 0.0).all(axis=1) & (np.nan_to_num(xy) < (w, h)).all(axis=1)
         at = np.where(inside[:, None], np.nan_to_num(xy), 0.0).astype(int)
-        there = self.before[at[:, 1], at[:, 0]]
-        inside &= there != UNKNOWN
-        hit = (there > 0) & (there != SHADOW) & inside
-        inside, hit = inside.reshape(-1, len(_ALONG)), hit.reshape(-1, len(_ALONG))
-        counted = inside.sum(axis=1)
-        return np.where(counted > 0, hit.sum(axis=1) / np.maximum(counted, 1), np.nan)
+        return samples_of(self.before[at[:, 1], at[:, 0]], inside, len(_ALONG))
 
 
 class RigEvidence:
@@ -185,9 +189,7 @@ class RigEvidence:
         """The cameras of the last frame set."""
         return [view for view in self.each if view.present]
 
-    def share_before(self, ends_m: Floats) -> Floats:
-        """The share (C,) of each part on the foreground: the mean over cameras with a background; NaN without one."""
-        shares = np.array([view.share_before(ends_m) for view in self.present])
-        seen = np.isfinite(shares)
-        total = np.where(seen, shares, 0.0).sum(axis=0)
-        return np.where(seen.any(axis=0), total / np.maximum(seen.sum(axis=0), 1), np.nan)
+    def count_samples(self, ends_m: Floats) -> PartSamples:
+        """The samples on each part's axis (C,2,3) [m], by what they show in all present pictures."""
+        each = (view.count_samples(ends_m) for view in self.present)
+        return sum(each, PartSamples.none(len(ends_m)))

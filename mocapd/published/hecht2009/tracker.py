@@ -12,7 +12,7 @@ from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.body.skeleton import joint_positions
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
-from mocapd.published.hecht2009.cylinders.limb_particles import LimbCloud, start_cloud, step_cloud
+from mocapd.published.hecht2009.cylinders.limb_particles import LimbCloud, step_cloud
 from mocapd.published.hecht2009.cylinders.limb_score import LimbView
 from mocapd.published.hecht2009.cylinders.part_colours import learn, reference_colours
 from mocapd.published.hecht2009.edge_penalties import (
@@ -27,6 +27,7 @@ from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
 from mocapd.published.hecht2009.hanging_body import HangingBody, hang
 from mocapd.published.hecht2009.head.head_track import HeadState, HeadTrack
 from mocapd.published.hecht2009.head.head_tracker import HeadTracker
+from mocapd.published.hecht2009.limb_clouds import clouds_about, clouds_at
 from mocapd.published.hecht2009.mass_spring.body_points import LIMBS, N_POINTS
 from mocapd.published.hecht2009.mass_spring.frusta import NAMES
 from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
@@ -47,6 +48,7 @@ from mocapd.published.hecht2009.mass_spring.skeleton_conversion import (
 )
 from mocapd.published.hecht2009.params import FLOOR_M, Params
 from mocapd.published.hecht2009.part_confidence import joint_confidence, joint_uncertainty_m
+from mocapd.published.hecht2009.part_samples import PartSamples
 from mocapd.published.hecht2009.stances import stances_of
 from mocapd.published.hecht2009.upright_head import UprightHead, find_upright_head
 from mocapd.tracking.base import Probe, Track, lost_body, no_probe, require_stature
@@ -63,14 +65,13 @@ _NEVER_S = 1e9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _TrackedPerson:
-    """State of a tracked person. head_sd_m: of the head's position; before (11,): each part's share on the foreground;
-    quality: 0..1."""
+    """State of a tracked person. head_sd_m: of the head's position; samples: of the parts, by foreground; quality: 0..1."""
 
     t_ns: int
     state: MassSpringState
     clouds: dict[str, LimbCloud]
     head_sd_m: float
-    before: Floats
+    samples: PartSamples
     quality: float
     cameras: tuple[str, ...]
 
@@ -190,38 +191,33 @@ class Hecht2009Tracker:
         for limb, which in LIMBS.items():
             points = with_points(resting(points), which, best[limb]).points_m
         state = project_onto_constraints(self._body, resting(points), None, FLOOR_M, p.simulation)
-        before = self._before(state.points_m)
+        samples = self._samples(state.points_m)
         self.probe("match")
         edge = float(np.mean([some.min() for some in edges.values()]))
-        if edge > p.match_edge or _mean_of_finite(before) < p.match_before:
+        if edge > p.match_edge or samples.body_share() < p.match_before:
             return None
         self._hanging = None
         self._views.forget_person()
-        clouds = self._clouds_at(state.points_m)
+        clouds = clouds_at(state.points_m, len(self._views.each), p)
         return _TrackedPerson(
-            frames.t_ns, state, clouds, head.sigma_along_m, before, 1.0 - edge, ()
+            frames.t_ns, state, clouds, head.sigma_along_m, samples, 1.0 - edge, ()
         )
 
     def _taken_over(self, near: BodyState, frames: FrameSet) -> _TrackedPerson | None:
         """Start from another tracker's body, with the picture outside it as background. The next look tests it."""
-        pose = near.pose
-        if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(self.params.too_old_s):
+        p, pose = self.params, near.pose
+        if pose is None or abs(frames.t_ns - near.t_ns) > nanoseconds(p.too_old_s):
             return None
         state = resting(points_from_skeleton(self._body, pose))
         self._mark(state.points_m)
         for view in self._views.present:
             view.seed_background()
         self._head.reset(head_middle(self._body, state))
-        unknown = np.full(len(NAMES), np.nan)
-        clouds = self._clouds_at(state.points_m)
-        return _TrackedPerson(frames.t_ns, state, clouds, 0.05, unknown, 0.0, ())
-
-    def _clouds_at(self, points_m: Floats) -> dict[str, LimbCloud]:
-        p, n_cameras = self.params, len(self._views.each)
-        return {
-            limb: start_cloud(points_m[list(which)], p.particles, n_cameras, p.score)
-            for limb, which in LIMBS.items()
-        }
+        age_s = max(seconds(frames.t_ns - near.t_ns), 0.0)
+        uncertainty_m = grow_uncertainty(near.uncertainty_m, age_s)
+        clouds = clouds_about(state.points_m, uncertainty_m, len(self._views.each), self._rng, p)
+        samples = PartSamples.none(len(NAMES))
+        return _TrackedPerson(frames.t_ns, state, clouds, 0.05, samples, 0.0, ())
 
     # --- following ---
 
@@ -249,15 +245,15 @@ class Hecht2009Tracker:
         masses = confident_masses(body.mass_kg, spread, p.variable_kg, p.falloff_per_m)
         state = project_onto_constraints(body, guided, masses, FLOOR_M, p.simulation)
         edge = mean_edge_penalty(body.frusta, state.points_m, self._limb_views(), p.score)
-        before = self._before(state.points_m)
+        samples = self._samples(state.points_m)
         self.probe("projection")
-        share = _mean_of_finite(before)
+        share = samples.body_share()
         if edge > p.most_edge or share < p.least_before:
             return None
         names = tuple(view.camera.name for view in self._views.present)
         quality = float(np.clip((1.0 - edge) * share, 0.0, 1.0))
         return _TrackedPerson(
-            frames.t_ns, state, clouds, head.sigma_along_m, before, quality, names
+            frames.t_ns, state, clouds, head.sigma_along_m, samples, quality, names
         )
 
     def _limb(
@@ -301,8 +297,8 @@ class Hecht2009Tracker:
         reference = reference_colours(self._views.appearance, self.params.score.along)
         return [view.limb_view(reference[view.index]) for view in self._views.present]
 
-    def _before(self, points_m: Floats) -> Floats:
-        return self._views.share_before(ends_m(self._body.frusta, points_m))
+    def _samples(self, points_m: Floats) -> PartSamples:
+        return self._views.count_samples(ends_m(self._body.frusta, points_m))
 
     def _learn_background(self) -> None:
         """Update the backgrounds outside the body, or everywhere without one."""
@@ -329,21 +325,15 @@ class Hecht2009Tracker:
         for limb, which in LIMBS.items():
             spread[list(which)] = np.sqrt(person.clouds[limb].variance_m2)
         uncertainty_m = joint_uncertainty_m(spread, person.head_sd_m)
-        before = np.where(np.isfinite(person.before), person.before, 0.5)
         body = BodyState(
             t_ns=frames.t_ns,
             tracking=tracking,
             tracker=self.name,
             pose=pose,
             joints_m=joint_positions(self._body.skeleton, pose),
-            confidence=joint_confidence(before, uncertainty_m) * confidence_fade(away_s),
+            confidence=joint_confidence(person.samples.confirmed_shares(), uncertainty_m)
+            * confidence_fade(away_s),
             cameras=person.cameras if away_s == 0.0 else (),
             uncertainty_m=grow_uncertainty(uncertainty_m, away_s),
         )
         return Track(body, shape, person.quality * confidence_fade(away_s))
-
-
-def _mean_of_finite(shares: Floats) -> float:
-    """The mean of the values (11,) that are not NaN; 1 without any."""
-    finite = shares[np.isfinite(shares)]
-    return float(finite.mean()) if len(finite) else 1.0

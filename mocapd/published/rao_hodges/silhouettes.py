@@ -11,6 +11,7 @@ from mocapd.tracking.pictures import CameraPicture, Pictures
 from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig
 from mocapd.vision.foreground_kernels import BACKGROUND, UNKNOWN
 from mocapd.vision.ghost_removal import brightness_edges
+from mocapd.vision.hidden_room import HiddenRoom, guess_room
 from mocapd.vision.room_background import RoomBackground
 
 
@@ -22,6 +23,7 @@ class CameraSilhouette:
         self.picture = picture
         h, w = picture.bgr.shape[:2]
         self.background = RoomBackground(h, w, params.background)
+        self._tolerance = params.background.tolerance
         self._wide_margin, self._close_margin = (
             np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
         )
@@ -32,19 +34,24 @@ class CameraSilhouette:
         self.background.reset()
         self._before = np.zeros(self.picture.bgr.shape[:2], np.uint8)
         self._body = np.zeros_like(self._before)  # where no background is learned
+        self._hidden: HiddenRoom | None = None  # behind an adopted body
         self._drawn = np.zeros_like(self._before)  # the ellipsoids of the body
 
     def renew(self, uncovered: bool) -> None:
         """Compare the newest picture with the background; uncovered: also move uncovered background into the model."""
-        self.background.follow_light(self.picture.bgr, self._body)
+        if self.background.follow_light(self.picture.bgr, self._body) is not None:
+            self._hidden = None  # the guess is in the light of before
         self._before = self.background.foreground(self.picture.bgr)
+        if self._hidden is not None:
+            room = self._hidden.is_seen(self.picture.bgr)
+            self._before[(self._before == UNKNOWN) & room] = BACKGROUND
         if uncovered:
             no_arms = np.zeros_like(self._body)
             self.background.remove_ghosts(self.picture.bgr, self._before, self._body, no_arms)
 
     def mask(self) -> Bytes:
-        """(h,w): 255 on the foreground, shadows included, and where the background is unknown. A hole in one silhouette
-        would be a hole in the hull, while shadows of several cameras intersect on the floor only."""
+        """(h,w): 255 on the foreground, shadows included, and where the background is neither known nor guessed. A hole
+        in one silhouette would be a hole in the hull, while shadows of several cameras intersect on the floor only."""
         return np.where(self._before != BACKGROUND, 255, 0).astype(np.uint8)
 
     def mark_body(self, places_m: Floats) -> None:
@@ -76,9 +83,11 @@ class CameraSilhouette:
             self.background.learn_unknown(self.picture.bgr, near, (0, 0, w, h))
 
     def seed(self) -> None:
-        """Initialise the background from the picture outside the marked body."""
+        """Initialise the background from the picture outside the marked body, and guess it behind."""
         near = np.asarray(cv2.dilate(self._drawn, self._close_margin), np.uint8)
         self.background.seed(self.picture.bgr, near)
+        guess = guess_room(self.picture.bgr, self._body, self._tolerance)
+        self._hidden = guess.where_hidden(self.picture.bgr)
 
     def edges_at_outline(self) -> tuple[float, float]:
         """The picture's gradient along the marked body's outline, and farther outside of it."""

@@ -1,7 +1,7 @@
 """A limb's particle filter: predict, weight, estimate and resample, as pure functions of arrays and random numbers."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -44,6 +44,13 @@ def start_cloud(points_m: Floats, n: int, n_cameras: int, params: LimbScoreParam
     points = np.repeat(points_m[None], n, axis=0)
     usual = UsualPenalties.initial(n_cameras, params)
     return LimbCloud(points, points.copy(), TICK_S, points_m.copy(), np.zeros(3), usual)
+
+
+def spread_cloud(cloud: LimbCloud, sd_m: Floats, rng: np.random.Generator) -> LimbCloud:
+    """A cloud at one place with its points spread at rest around it, with standard deviations sd_m (3,) along each axis; not
+    yet constrained."""
+    points = cloud.points_m + sd_m[:, None] * rng.standard_normal(cloud.points_m.shape)
+    return replace(cloud, points_m=points, previous_m=points.copy(), variance_m2=sd_m**2)
 
 
 def draw_noise(rng: np.random.Generator, n: int) -> NoiseDraws:

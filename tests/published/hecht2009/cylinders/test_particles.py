@@ -14,6 +14,7 @@ from mocapd.published.hecht2009.cylinders.limb_particles import (
     LimbCloud,
     draw_noise,
     predict,
+    spread_cloud,
     start_cloud,
     step_cloud,
     sum_up,
@@ -59,6 +60,15 @@ def scattered(
 ) -> Floats:
     draws = draw_noise(np.random.default_rng(1), N)
     return predict(of or cloud(), TICK_S, views, draws, params) - ARM_M
+
+
+def test_a_cloud_about_an_unsure_place_is_as_wide_and_at_rest() -> None:
+    sd = np.array([0.0, 0.02, 0.1])
+    wide = spread_cloud(cloud(), sd, np.random.default_rng(0))
+    assert wide.points_m.std(axis=0) == pytest.approx(np.repeat(sd[:, None], 3, 1), rel=0.1)
+    assert wide.points_m.mean(axis=0) == pytest.approx(ARM_M, abs=0.02)
+    assert np.array_equal(wide.points_m, wide.previous_m)
+    assert wide.variance_m2 == pytest.approx(sd**2)
 
 
 @pytest.mark.parametrize("dt_s", [1 / 60, 1 / 30, 0.1])
