@@ -32,13 +32,12 @@ def _no_floor(params: ClothesParams) -> ClothesParams:
 
 
 def _no_arm_search(params: ClothesParams) -> ClothesParams:
-    return replace(params, limbs=replace(params.limbs, uncertain_arm=_CERTAIN))
+    never = replace(params.limbs, uncertain_arm=_CERTAIN, uncertain_arm_small_baseline=_CERTAIN)
+    return replace(params, limbs=never)
 
 
 def _no_leg_search(params: ClothesParams) -> ClothesParams:
-    never = replace(params.legs, uncertain=_CERTAIN)
-    swap = replace(params.limb_swap, looks=_FOREVER)
-    return replace(params, legs=never, limb_swap=swap)
+    return replace(params, legs=replace(params.legs, uncertain=_CERTAIN))
 
 
 def _no_shadows(params: ClothesParams) -> ClothesParams:

@@ -41,5 +41,9 @@ ARM_AREAS = {
     "left": slice(Area.LEFT_SHOULDER, Area.LEFT_WRIST + 1),
     "right": slice(Area.RIGHT_SHOULDER, Area.RIGHT_WRIST + 1),
 }
+FOREARM_AREAS = {
+    "left": slice(Area.LEFT_FOREARM_FRONT, Area.LEFT_WRIST + 1),
+    "right": slice(Area.RIGHT_FOREARM_FRONT, Area.RIGHT_WRIST + 1),
+}
 SHOULDER_END = 0.45  # of the upper arm, from the shoulder
 FOREARM_END = 0.55  # of the forearm, from the elbow: then the wrist

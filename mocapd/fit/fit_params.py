@@ -67,7 +67,9 @@ class MotionPriorParams:
 class LimbSearchParams:
     """When the search tries other poses of an arm, and how many."""
 
-    uncertain_arm: float = 0.45  # share of an arm's pixels confirmed, below which others are tried
+    # share of an arm's pixels confirmed, below which others are tried
+    uncertain_arm: float = 0.45
+    uncertain_arm_small_baseline: float = 0.45
     nearer_px: float = 100.0  # well in front of the body, above which both arms are uncertain
     arm_cloud: int = 64  # samples about the present pose
     arm_library: int = 128  # tries over the whole range, another part each frame

@@ -6,13 +6,14 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.areas import ARM_AREAS, N_AREAS
+from mocapd.body.areas import ARM_AREAS, FOREARM_AREAS, N_AREAS
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.positive_inverse import positive_inverse
 from mocapd.types import Floats, Ints
 
 _CONFIRMED, _CONFIRMED_PX = 0.4, 4.0  # share and number of the rendered pixels
 _IN_SIGHT = 0.10  # an arm in sight takes at least this share of all that is visible
+_FOREARM_IN_SIGHT = 0.03
 
 
 @dataclass(frozen=True, eq=False)  # no slots: a cached property lives in __dict__
@@ -61,14 +62,21 @@ class Fit:
     @cached_property
     def confirmed_arms(self) -> dict[str, float]:
         """0..1 by side: share of an arm that the pictures confirm; 0 out of sight."""
-        in_sight = _IN_SIGHT * self.visible_px
-        confirmed = {}
-        for side, p in ARM_AREAS.items():
-            asked = self.visible[p].sum() + self.unexplained[p].sum()
-            confirmed[side] = float(
-                (self.matched * self.in_depth)[p].sum() / (max(asked, in_sight) + 1.0)
-            )
-        return confirmed
+        return {side: self._confirmed(p, _IN_SIGHT) for side, p in ARM_AREAS.items()}
+
+    @cached_property
+    def confirmed_to_hands(self) -> dict[str, float]:
+        """The lesser, by side, of `confirmed_arms` and the same share of the forearm."""
+        forearms = {
+            side: self._confirmed(p, _FOREARM_IN_SIGHT) for side, p in FOREARM_AREAS.items()
+        }
+        return {side: min(share, forearms[side]) for side, share in self.confirmed_arms.items()}
+
+    def _confirmed(self, areas: slice, in_sight: float) -> float:
+        """in_sight: the share of all visible pixels that the areas take at least, in sight."""
+        asked = self.visible[areas].sum() + self.unexplained[areas].sum()
+        matched = (self.matched * self.in_depth)[areas].sum()
+        return float(matched / (max(asked, in_sight * self.visible_px) + 1.0))
 
 
 def confirmed_parts(matched: Floats | Ints, visible: Floats | Ints) -> NDArray[np.bool_]:

@@ -1,11 +1,9 @@
 """The velocity of a body between two fits."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from mocapd.body.model import BodyModel
-from mocapd.body.pose_space import SIDES
-from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState, step_between
 from mocapd.types import Floats
 
@@ -25,21 +23,22 @@ class VelocityParams:
 def velocity_between(
     model: BodyModel,
     last: MotionState,
-    fit: Fit,
+    state: MotionState,
+    confirmed_arms: Mapping[str, float],
     dt_s: float,
     jumped: Iterable[slice],
     params: VelocityParams,
 ) -> Floats:
-    """Velocity (n_pose,) of the pose parameters per second, from the last state dt_s [s] ago to the fit; 0 for parameters
-    that jumped."""
-    p, state = params, fit.state
+    """Velocity (n_pose,) of the pose parameters per second, from the last state dt_s [s] ago to this one; 0 for parameters
+    that jumped. confirmed_arms: shares 0..1 by side, see `Fit`."""
+    p = params
     before, now = (last.root_m, last.local_xyzw), (state.root_m, state.local_xyzw)
     velocity = step_between(model, now, before) / dt_s
     velocity[:3] = velocity[:3].clip(-p.fastest_m_s, p.fastest_m_s)
     velocity[3:] = velocity[3:].clip(-p.fastest_rad_s, p.fastest_rad_s)
-    for side in SIDES:
+    for side, share in confirmed_arms.items():
         # blend measured velocity and decayed old velocity by the arm's visibility
-        trust = min(max((fit.confirmed_arms[side] - _UNSEEN) / p.arm_trust, 0.0), 1.0)
+        trust = min(max((share - _UNSEEN) / p.arm_trust, 0.0), 1.0)
         columns = model.space.columns(f"{side}_arm")
         decayed = p.hidden_arm_keeps * last.velocity[columns]
         velocity[columns] = trust * velocity[columns] + (1.0 - trust) * decayed

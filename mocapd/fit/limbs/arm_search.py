@@ -63,18 +63,17 @@ class ArmSearch:
         turn: a running number; each turn tries another part of the low-discrepancy sets; terms: of every fit.
         """
         p = self.params
-        if not any(is_uncertain(side, fit, p) for side in self.arms):
+        small = self.fitter.has_small_baseline(fit.state, views)
+        if not any(is_uncertain(side, fit, p, small) for side in self.arms):
             return fit, ()
         changed = []
-        empty = (
-            p.empty_small_baseline if self.fitter.has_small_baseline(fit.state, views) else p.empty
-        )
+        empty = p.empty_small_baseline if small else p.empty
         refit = partial(
             self.fitter.fit, views=views, dt_s=dt_s, iterations=3, learn_shape=learn_shape, fine=1, terms=terms
         )  # fmt: skip
         exchanges = bool(p.exchange_turns) and turn % p.exchange_turns == 0 and has_depths(views)
         for side, arm in self.arms.items():
-            if not is_uncertain(side, fit, p):
+            if not is_uncertain(side, fit, p, small):
                 continue
             tries = self._candidates(fit.state, arm, views, turn)
             scores = self._scores(fit.state, arm, views, tries, empty)
@@ -146,9 +145,12 @@ class ArmSearch:
         return float(unusualness(pose_xyzw[None], self._usual[side])[0])
 
 
-def is_uncertain(side: str, fit: Fit, params: LimbSearchParams) -> bool:
+def is_uncertain(
+    side: str, fit: Fit, params: LimbSearchParams, small_baseline: bool = False
+) -> bool:
     """Whether the pictures confirm too little of an arm, or show an object well in front of the body."""
-    return fit.confirmed_arms[side] < params.uncertain_arm or fit.nearer_px > params.nearer_px
+    least = params.uncertain_arm_small_baseline if small_baseline else params.uncertain_arm
+    return fit.confirmed_arms[side] < least or fit.nearer_px > params.nearer_px
 
 
 def arm_library(space: PoseSpace, size: int, side: str) -> Floats:

@@ -136,16 +136,6 @@ def seldom(squared: Floats, tail: float) -> Floats:
     return out
 
 
-def unusual_legs(local_xyzw: Floats) -> float:
-    """Squared Mahalanobis distance of both legs of a pose (J,4) from where they usually are."""
-    return sum(
-        float(
-            unusual_leg(local_xyzw[None, [INDEX[side + bone] for bone in _LEG_REST_RAD]], side)[0]
-        )
-        for side in ("left", "right")
-    )
-
-
 def unusualness(poses_xyzw: Floats, arm: ArmMotion) -> Floats:
     """Squared Mahalanobis distances (N,) of poses (N,3,4) of an arm from where it usually is."""
     away = rotations.log(rotations.multiply(poses_xyzw, rotations.inverse(arm.mean_xyzw)))

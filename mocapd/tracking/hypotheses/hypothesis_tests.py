@@ -6,7 +6,6 @@ from mocapd.tracking.hypotheses.base import HypothesisContext, PoseHypothesis, S
 from mocapd.tracking.hypotheses.foot_heading import FootHeading
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 from mocapd.tracking.hypotheses.limb_poses import ArmPoses, LegPoses
-from mocapd.tracking.hypotheses.limb_swap import LimbSwap
 
 
 class HypothesisTests:
@@ -20,7 +19,6 @@ class HypothesisTests:
         self._searched: dict[str, PoseHypothesis] = {
             "arm_poses": ArmPoses(),
             "leg_poses": LegPoses(),
-            "limb_swap": LimbSwap(params.limb_swap),
         }
 
     def reset(self) -> None:

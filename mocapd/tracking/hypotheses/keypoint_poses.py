@@ -28,9 +28,11 @@ class KeypointPoses:
 
     def __init__(self, params: KeypointPoseParams) -> None:
         self._params = params
+        self.reset()
 
     def reset(self) -> None:
         """See PoseHypothesis."""
+        self._reversed_looks = 0
 
     def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """See PoseHypothesis."""
@@ -39,21 +41,33 @@ class KeypointPoses:
 
     def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
         """See `best_keypoint_pose`. Unchanged without detected keypoints."""
+        p, fitter = self._params, at.solvers.fitter
         for joints in at.joints:
-            now = best_keypoint_pose(now, at, joints, self._params)
+            turn_rad = joints.turn_rad(fitter.joints(now.fit.state)[0])
+            crossing = not fitter.has_small_baseline(now.fit.state, now.views)
+            is_reversed = crossing and abs(turn_rad) > p.reversed_rad
+            self._reversed_looks = self._reversed_looks + 1 if is_reversed else 0
+            now = best_keypoint_pose(now, at, joints, p, self._reversed_looks >= p.reversed_looks)
         return now
 
 
 def best_keypoint_pose(
-    now: ScoredFit, at: HypothesisContext, joints: JointTerm, params: KeypointPoseParams
+    now: ScoredFit,
+    at: HypothesisContext,
+    joints: JointTerm,
+    params: KeypointPoseParams,
+    is_reversed: bool = False,
 ) -> ScoredFit:
-    """The cheapest of the present fit and those that start at the keypoints."""
+    """The cheapest of the present fit and those that start at the keypoints. is_reversed: these alone say that the body faces
+    the other way."""
     fitter = at.solvers.fitter
     held = [one for one in now.terms if not one.is_measured and one is not joints]
     starts = keypoint_starts(
         fitter, now.fit, joints, held, params, legs_alone=at.trunk_prior is not None
     )
-    return best_start(now, at, joints, starts, params.fit_iterations, params.gain, params.farther)
+    return best_start(
+        now, at, joints, starts, params.fit_iterations, params.gain, params.farther, is_reversed
+    )
 
 
 def best_start(
@@ -64,11 +78,12 @@ def best_start(
     iterations: int,
     gained: float,
     farther: float,
+    trusts_keypoints: bool = False,
 ) -> ScoredFit:
     """The cheapest of the present fit and those that start at `starts`, each with the parts that it changes.
 
     gained: by how much the cost must fall [disagreeing pixels]; farther: how much more it must fall for limbs that are
-    farther away [disagreeing pixels/rad^2].
+    farther away [disagreeing pixels/rad^2]; trusts_keypoints: where all of the body changes, too.
     """
     fitter = at.solvers.fitter
     here_xyzw = now.fit.state.local_xyzw[_LONG_BONES]
@@ -87,7 +102,9 @@ def best_start(
         )  # fmt: skip
         away_rad2 = float(turned_rad2(fit.state.local_xyzw[None, _LONG_BONES], here_xyzw)[0])
         gain = now.fit.cost_for_any_pose - fit.cost_for_any_pose - farther * away_rad2
-        if WHOLE in changed:  # started by the keypoints: the pictures must confirm it without them
+        if (
+            WHOLE in changed and not trusts_keypoints
+        ):  # started by the keypoints: the pictures must confirm it without them
             gain -= cost_of(now.fit) - cost_of(fit)
         if gain > gained:
             best, gained = ScoredFit(fit, views, terms, changed), gain

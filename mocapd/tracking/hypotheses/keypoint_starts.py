@@ -26,6 +26,8 @@ class KeypointPoseParams:
     limb_cost: float = 25.0  # of its joints, more than there [disagreeing pixels]
     whole_cost: float = 150.0
     turned_rad: float = 0.6  # yaw error above which the body is turned first
+    reversed_rad: float = 2.4  # the same, above which the body faces the other way
+    reversed_looks: int = 3  # in a row that say so, where views cross: colours learned from a reversed body confirm it
     iterations: int = 6  # of the fit to the keypoints alone
     fit_iterations: int = 4  # of a fit to the pictures from there
     loose_s: float = 0.3  # the prior is as weak as a prediction over this time

@@ -306,6 +306,16 @@ def test_an_arm_is_confirmed_where_the_pictures_show_it() -> None:
     assert wrong.confirmed_arms["right"] > 0.9
 
 
+def test_an_arm_counts_no_more_than_its_forearm_as_far_as_the_hand() -> None:
+    by, truth = fitter(2), standing("t_pose", "t_pose")
+    bent = truth.local_xyzw.copy()
+    elbow = INDEX["leftLowerArm"]
+    bent[elbow] = rotations.multiply(bent[elbow], rotations.exp(np.array([0.0, -1.5, 0.0])))
+    wrong = by.fit(replace(truth, local_xyzw=bent), views_of(by, truth), 1 / 30, 1)
+    assert wrong.confirmed_to_hands["left"] < 0.7 * wrong.confirmed_arms["left"]
+    assert wrong.confirmed_to_hands["right"] > 0.9
+
+
 def test_a_lost_arm_is_found_again_and_the_other_left_alone() -> None:
     params = LimbSearchParams()
     by, truth = fitter(2), standing("goalpost", "side_low")

@@ -10,8 +10,8 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry import rotations
 from mocapd.tracking.hypotheses.foot_heading import FootHeadingParams, legs_with_turned_feet
+from tests.tracking.hypotheses.standing_body import BODY, FITTER, standing
 from tests.tracking.hypotheses.test_keypoint_poses import seen_at
-from tests.tracking.hypotheses.test_limb_swap import BODY, FITTER, standing
 
 pytestmark = pytest.mark.kernels
 

@@ -26,7 +26,7 @@ from mocapd.tracking.hypotheses.keypoint_starts import (
 )
 from mocapd.tracking.ticks import Ticks
 from mocapd.types import Floats, FrameSet, Ints
-from tests.tracking.hypotheses.test_limb_swap import BODY, FITTER, standing
+from tests.tracking.hypotheses.standing_body import BODY, FITTER, standing
 
 pytestmark = pytest.mark.kernels
 

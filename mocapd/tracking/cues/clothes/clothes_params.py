@@ -11,7 +11,6 @@ from mocapd.tracking.cues.clothes.appearance import AppearanceParams
 from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
 from mocapd.tracking.hypotheses.foot_heading import FootHeadingParams
 from mocapd.tracking.hypotheses.keypoint_starts import KeypointPoseParams
-from mocapd.tracking.hypotheses.limb_swap import LimbSwapParams
 from mocapd.tracking.planted_feet import PlantedFeetParams
 from mocapd.tracking.velocity import VelocityParams
 from mocapd.vision.room_background import BackgroundParams
@@ -102,7 +101,9 @@ class ClothesParams:
     motion: MotionPriorParams = field(default_factory=MotionPriorParams)
     # learned colours confirm less than the shirt's; hands belong to the forearm's region
     limbs: LimbSearchParams = field(
-        default_factory=lambda: LimbSearchParams(hand_px=0.0, hand_cost=0.0, exchange_turns=4)
+        default_factory=lambda: LimbSearchParams(
+            uncertain_arm=0.55, hand_px=0.0, hand_cost=0.0, exchange_turns=4
+        )
     )
     legs: LegSearchParams = field(default_factory=LegSearchParams)
     background: BackgroundParams = field(default_factory=BackgroundParams)
@@ -113,7 +114,6 @@ class ClothesParams:
     floor: FloorParams = field(default_factory=FloorParams)
     planted: PlantedParams = field(default_factory=PlantedParams)
     feet: PlantedFeetParams = field(default_factory=PlantedFeetParams)
-    limb_swap: LimbSwapParams = field(default_factory=LimbSwapParams)
     depths: StereoDepthParams = field(default_factory=StereoDepthParams)
     joints: KeypointDetectionParams = field(default_factory=KeypointDetectionParams)
     keypoint_poses: KeypointPoseParams = field(default_factory=KeypointPoseParams)
@@ -132,6 +132,9 @@ class ClothesParams:
     soft: float = 60.0 / 255.0  # weight of a rendered pixel in the foreground of another region
 
     # motion from frame to frame
+    sure_to_hand: float = (
+        0.6  # share of an arm and of its forearm confirmed, from which on it is where views cross
+    )
     velocity: VelocityParams = field(default_factory=VelocityParams)
 
     # decisions

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.body.model import BodyModel, build_model
-from mocapd.body.pose_space import full_body, upper_body
+from mocapd.body.model import build_model
+from mocapd.body.pose_space import SIDES, full_body, upper_body
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
@@ -21,6 +21,7 @@ from mocapd.fit.view import View
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.tracking.cues.clothes.confirmed_arms import confirmed_arms
 from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
 from mocapd.tracking.cues.clothes.region_merge import RegionSolverCache
 from mocapd.tracking.cues.clothes.regions import Region, silhouette_labels
@@ -140,7 +141,7 @@ class ClothesSolver:
             fit.covariance, body.velocity, 1.0, fitter.prediction_sd, [], self.params.motion
         )
         cameras.learn(body, views)
-        _velocity_of(model, self.params, fit, body, TICK_S, ())
+        self._velocity(fit, views, body, TICK_S, ())
         evidence = PoseEvidence(cameras.classify, lambda _, __: terms)
         at = HypothesisContext(
             self.appearance.solvers, TICK_S, frames, Ticks(1, 1, 1), observed, evidence
@@ -167,9 +168,9 @@ class ClothesSolver:
             probe("clothes.depths")
         motion = None
         if last is not None:
-            motion = prediction_prior(
-                fitter, last, state.motion.velocity, dt_s, p.limbs.uncertain_arm, p.motion
-            )
+            confirmed, least = confirmed_arms(fitter, last, predicted, views, p)
+            weights = {side: share / least for side, share in confirmed.items()}
+            motion = prediction_prior(fitter, last, state.motion.velocity, dt_s, weights, p.motion)
         planted = self._planted()
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
@@ -303,12 +304,27 @@ class ClothesSolver:
             return None
         velocity = np.zeros(self.model.n_pose)
         if last is not None:
-            velocity = _velocity_of(self.model, self.params, fit, last, dt_s, changed)
+            velocity = self._velocity(fit, scored.views, last, dt_s, changed)
         if t_ns is not None:
             self._feet.update(self.fitter.joints(fit.state)[0], t_ns)
-        views = tuple(scored.views)
-        motion = replace(fit.state, velocity=velocity)
+        motion, views = replace(fit.state, velocity=velocity), tuple(scored.views)
         return ClothesEstimate(fit, motion, views, self.cameras.names(views), changed)
+
+    def _velocity(
+        self,
+        fit: Fit,
+        views: Sequence[View],
+        last: MotionState,
+        dt_s: float,
+        changed: Sequence[str],
+    ) -> Floats:
+        """Velocity (n_pose,) per second since the last state; 0 for relocated parts."""
+        of = self.model.space.columns
+        columns = [slice(None) if part == WHOLE else of(part) for part in changed]
+        confirmed, _ = confirmed_arms(self.fitter, fit, fit.state, views, self.params)
+        return velocity_between(
+            self.model, last, fit.state, confirmed, dt_s, columns, self.params.velocity
+        )
 
     def _trunk_prior(self, state: TrackState, dt_s: float) -> Floats:
         """Information (n_pose,n_pose) of a prediction whose trunk and arms come from the shirt."""
@@ -320,8 +336,9 @@ class ClothesSolver:
                 diagonal + 1.0 / (self.fitter.prediction_sd**2 * max(dt_s / TICK_S, 0.5))
             )
         p = self.params
+        by_trunk = dict.fromkeys(SIDES, 1.0)  # the arms are where the shirt placed them
         motion = prediction_prior(
-            self.fitter, state.whole, state.motion.velocity, dt_s, p.limbs.uncertain_arm, p.motion
+            self.fitter, state.whole, state.motion.velocity, dt_s, by_trunk, p.motion
         )
         return np.asarray(motion + np.diag(diagonal))
 
@@ -331,16 +348,3 @@ def _is_plausible(fit: Fit, params: ClothesParams) -> bool:
     # every second pixel was counted
     enough = 2.0 * fit.matched.sum() >= params.least_body_px
     return fit.explained >= params.live_explained and bool(enough)
-
-
-def _velocity_of(
-    model: BodyModel,
-    params: ClothesParams,
-    fit: Fit,
-    last: MotionState,
-    dt_s: float,
-    changed: Sequence[str],
-) -> Floats:
-    """Velocity (n_pose,) per second since the last state; 0 for relocated parts."""
-    columns = [slice(None) if part == WHOLE else model.space.columns(part) for part in changed]
-    return velocity_between(model, last, fit, dt_s, columns, params.velocity)

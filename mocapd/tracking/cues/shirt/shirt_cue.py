@@ -140,9 +140,8 @@ class ShirtCue:
             and previous.taught_s < p.shape.learning_s
             and last.match > p.shape.least_match
         )
-        motion = prediction_prior(
-            fitter, last, start.velocity, dt_s, p.limbs.uncertain_arm, p.motion
-        )
+        weights = {side: s / p.limbs.uncertain_arm for side, s in last.confirmed_arms.items()}
+        motion = prediction_prior(fitter, last, start.velocity, dt_s, weights, p.motion)
         terms = stereo_distance_terms(fitter, start, views, frames, frame_index, p.distances)
         fit = fitter.fit(
             start, views, dt_s, p.fit.iterations - self.work.fewer_iterations, learning, rendered=True,
@@ -162,7 +161,7 @@ class ShirtCue:
             state = replace(state, information=state.information + gained)
             taught_s += dt_s
         velocity = velocity_between(
-            self.model, upper_body_state(previous.motion, self.model), fit, dt_s,
+            self.model, upper_body_state(previous.motion, self.model), fit.state, fit.confirmed_arms, dt_s,
             [self._columns[side] for side in jumped], p.velocity,
         )  # fmt: skip
         redraw = fit is not unsearched or any(is_uncertain(s, unsearched, p.limbs) for s in SIDES)

@@ -1,0 +1,29 @@
+"""Somebody who stands before two cameras, and a fitter of the regions of clothes."""
+
+import numpy as np
+
+from mocapd.body.model import build_model
+from mocapd.body.pose_space import full_body
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.solver import Fitter
+from mocapd.geometry import rotations
+from mocapd.tracking.cues.clothes.regions import region_labels
+from tests.geometry.rigs import ring
+
+BODY = build_model(1.75, full_body())
+FITTER = Fitter(BODY, region_labels(BODY), ring(2), [2, 2], FitParams())
+
+
+def standing(yaw_rad: float, spread_rad: float) -> MotionState:
+    """Somebody upright whose legs are turned outwards, or over each other."""
+    local = np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1))
+    local[0] = rotations.exp(np.array([0.0, yaw_rad, 0.0]))
+    for side, mirror in (("left", 1.0), ("right", -1.0)):
+        turned = np.array([0.0, 0.0, mirror * spread_rad])
+        local[INDEX[side + "UpperLeg"]] = rotations.exp(turned)
+    space = BODY.space
+    return MotionState(
+        BODY.rest_m[0].copy(), local, np.zeros(BODY.n_pose), np.ones(BODY.n_shape), initial_information(space)
+    )  # fmt: skip
