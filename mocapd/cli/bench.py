@@ -10,9 +10,7 @@ from mocapd.child_process import child_command
 from mocapd.cli.options import (
     ConfigOption,
     SetOption,
-    VariantOption,
     effective_config,
-    refuse_variant,
 )
 from mocapd.errors import ConfigError, UsageError
 
@@ -31,7 +29,6 @@ def bench_command(
     tracker: Annotated[
         str | None, typer.Option(help="Which tracker [default: all that the input suits]")
     ] = None,
-    variant: VariantOption = None,
     capture: Annotated[
         str, typer.Option(help="A capture folder, or sim:SCENARIO.", metavar="FOLDER")
     ] = _DEFAULT,
@@ -65,7 +62,6 @@ def bench_command(
     from mocapd.capture.kinds.source_kinds import is_simulated
     from mocapd.outputs.output_table import zenoh_section
 
-    refuse_variant(variant)
     if recording is not None:
         _recording(recording)
         return
