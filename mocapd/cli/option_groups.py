@@ -25,13 +25,13 @@ def spread_options(command: Callable[..., None]) -> Callable[..., None]:
                 )
             )
 
-    @wraps(command)
+    @wraps(command, assigned=("__module__", "__name__", "__doc__"))  # annotations stay its own
     def run(**values: Any) -> None:
         for name, group in groups.items():
             values[name] = group(**{field.name: values.pop(field.name) for field in fields(group)})
         command(**values)
 
-    run.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    run.__annotations__.update({one.name: one.annotation for one in parameters})
     vars(run)["__signature__"] = inspect.Signature(parameters)
     return run
 
