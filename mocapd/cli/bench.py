@@ -27,7 +27,7 @@ def add_to(app: typer.Typer) -> None:
 
 def bench_command(
     tracker: Annotated[
-        str | None, typer.Option(help="Which tracker [default: all that the input suits]")
+        str | None, typer.Option(help="Which tracker [default: all that can track this input]")
     ] = None,
     capture: Annotated[
         str, typer.Option(help="A capture folder, or sim:SCENARIO.", metavar="FOLDER")
@@ -37,24 +37,26 @@ def bench_command(
         bool, typer.Option("--live", help="Time the real daemon on simulated webcams instead.")
     ] = False,
     watched: Annotated[
-        bool, typer.Option("--watched", help="With --live: a client watches its page meanwhile.")
+        bool, typer.Option("--watched", help="With --live: a client has the daemon's page open.")
     ] = False,
     seconds: Annotated[float, typer.Option(help="How long --live runs [s].", min=1.0)] = 60.0,
     endurance: Annotated[
         float | None,
-        typer.Option(help="Run round and round for so long, as fast as it goes.", metavar="MIN"),
+        typer.Option(
+            help="Repeat the input as fast as possible for this long [min].", metavar="MIN"
+        ),
     ] = None,
     recording: Annotated[
         Path | None,
         typer.Option(
-            help="What an hour of the motion in this recording takes, and what a kill costs.",
+            help="Print the disk space of an hour of this motion, and the loss after a kill.",
             metavar="FILE",
         ),
     ] = None,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
-    """Time trackers on decoded frames, stage by stage; or the whole daemon; or recording.
+    """Time each stage of the trackers on decoded frames, the whole daemon, or recording.
 
     Example: mocapd bench --tracker shirt --json
     """

@@ -47,7 +47,7 @@ def calibrate(
     """Calibrate cameras, room, colours and wearer, on a page in the browser.
 
     Attaches to the running daemon, else opens the cameras itself; prints the page's URL, and opens
-    the browser when there is a desktop. What was saved before stays until the new one is saved.
+    the browser when there is a desktop. The saved calibration stays until you save a new one.
 
     Example: mocapd calibrate
 

@@ -27,7 +27,7 @@ def cameras(
         ),
     ] = None,
 ) -> None:
-    """List the webcams, and why one cannot be used.
+    """List the webcams, with the reason if one cannot be used.
 
     Each with node, name, vid:pid:serial, USB port and formats. The `source` of a camera goes into the config. Of a user
     without a password at --at it is asked for, or read from the input.

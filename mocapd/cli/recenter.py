@@ -11,7 +11,7 @@ def add_to(app: typer.Typer) -> None:
 
 
 def recenter(config: ConfigOption = None, settings: SetOption = None) -> None:
-    """Make the way the person faces now forward, in the running daemon.
+    """Make the current direction of the person forward, in the running daemon.
 
     Stand, and look straight ahead, in VR at what shall be ahead there. VRChat then turns the body to the headset, and in
     SteamVR (vmt) it faces as the play area does.

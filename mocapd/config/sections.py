@@ -42,7 +42,7 @@ class ControlsSection(Controls):
     wb_temperature: [K]
     focus: without a unit
     dynamic_framerate: whether the camera may lower its rate in dim light
-    power_line_hz: the mains whose flicker the camera filters: 50 or 60, 0 for none
+    power_line_hz: mains frequency of the lamps, whose flicker the camera filters: 50, 60, or 0 for none
     """
 
 
@@ -82,11 +82,11 @@ class BundlerSection:
 class TrackerSection:
     """The tracker, and its assumptions about the wearer.
 
-    name: auto, by all cues that can run; shirt or markerless, by that alone; canned (moves by itself); wang2011, hecht2009,
+    name: auto uses all available cues; shirt or markerless, that cue alone; canned (moves by itself); wang2011, hecht2009,
       rao_hodges (as published)
     stature_m: the wearer's height without shoes [m]
     coast_s: how long after the last evidence a pose is still predicted [s]
-    stuck_s: after so long in one step the tracker is held to be stuck, and the process ends with 70 [s]
+    stuck_s: if one step of the tracker takes longer, the process ends with exit code 70 [s]
     """
 
     name: str = "auto"

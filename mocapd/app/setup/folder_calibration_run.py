@@ -59,7 +59,9 @@ class FolderOptions:
     )
     two_sided: Annotated[
         bool,
-        typer.Option("--two-sided", help="The back bears the mirror image; ChArUco only."),
+        typer.Option(
+            "--two-sided", help="The board has the mirror image on its back; ChArUco only."
+        ),
     ] = False
     floor_frame: Annotated[
         int | None,

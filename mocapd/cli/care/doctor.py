@@ -24,7 +24,7 @@ def doctor(
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
-    """Say what keeps mocapd from tracking here.
+    """Find what keeps mocapd from tracking on this machine, and the remedy.
 
     And what would mend it. Rights, webcams, USB bandwidth, the calibration, ports, folders and their room,
     processor, clock and libraries: a line each, `ok`, `warn` or `bad`. Changes nothing, and takes no picture.

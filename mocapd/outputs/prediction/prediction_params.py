@@ -10,7 +10,7 @@ from msgspec import Meta
 class PredictionParams:
     """Whether the outputs send predicted poses.
 
-    hz: send so many predicted poses a second, also between the cameras' frames [Hz]; 0: each pose as it was measured
+    hz: number of predicted poses per second, also between the cameras' frames [Hz]; 0: each pose as measured
     ahead_ms: with hz, how long after a pose is sent it will be on the screen [ms]
     outputs: which outputs do so; empty: all. Leave out zenoh where you record
     """
