@@ -28,7 +28,7 @@ def camera_node(
     ] = None,
     listen: Annotated[
         str | None,
-        typer.Option(help="Endpoint to be reached at, such as tls/0.0.0.0:7447: zenoh.listen."),
+        typer.Option(help="Endpoint to listen on, such as tls/0.0.0.0:7447: zenoh.listen."),
     ] = None,
     connect: Annotated[
         str | None,

@@ -22,7 +22,7 @@ class Params:
 
     destinations: list of `address:port`, numeric addresses only
     port_step: VMC has no person numbers, so person n is sent to the configured port plus n times this
-    root: which carries the way over the floor: `hips`, as every receiver reads them, or `root`
+    root: which bone has the motion over the floor: `hips`, which every receiver supports, or `root`
     turn: 180 for a receiver that shows the avatar from behind [degrees]
     yaw_deg: additional turn, counter-clockwise from above [degrees]
     mirror: as in a mirror: the person's left is the avatar's right
