@@ -24,8 +24,8 @@ def main() -> None:
 
     import mocapd.capture.environment  # noqa: F401  what cv2 reads while it is imported
     from mocapd.cli.care.completion import ready_to_complete
+    from mocapd.cli.command_line.removed_options import refuse_removed_options
     from mocapd.cli.command_list import app
-    from mocapd.cli.removed_options import refuse_removed_options
     from mocapd.errors import MocapdError
 
     interruptible(sys.argv)
