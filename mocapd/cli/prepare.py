@@ -13,8 +13,8 @@ def add_to(app: typer.Typer) -> None:
 def prepare(config: ConfigOption = None, settings: SetOption = None) -> None:
     """Prepare the first start: compile the tracker and make the pose database.
 
-    About a minute, once on a machine and after an upgrade that changed them; a start then takes seconds. The Debian
-    package does so in the background when it is installed. `mocapd doctor` says whether it is done.
+    It takes about a minute, once on a machine and after some upgrades; a start then takes seconds. The Debian package
+    does it in the background when it is installed. `mocapd doctor` says whether it is finished.
 
     Example: mocapd prepare
     """
