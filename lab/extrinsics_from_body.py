@@ -96,7 +96,8 @@ def find_extrinsics(
     """The rig from the capture's lenses and videos."""
     bare_cameras = known.folder.rig.cameras
     tracks = PatchTracks(bare_cameras, known.stature_m, known.colours, known.W, database)
-    tracks.add_all(frame_sets(known.folder))
+    for frames in frame_sets(known.folder):
+        tracks.add(frames)
     return extrinsics_from_body(tracks.observations, bare_cameras, known.stature_m)
 
 

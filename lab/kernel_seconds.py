@@ -95,7 +95,7 @@ def compile_stage(stage: str, cache: Path) -> None:
     """In this process; prints what was compiled, and what was used, as JSON."""
     from numba.core.dispatcher import Dispatcher
 
-    from mocapd.kernels.compile_events import compile_events
+    from lab.compile_events import compile_events
     from mocapd.kernels.type_codes import encode
 
     with compile_events() as compiled:

@@ -25,7 +25,7 @@ _COMMANDS = """\
 
 Written by `python -m lab.reference docs`; do not edit by hand.
 
-Data goes to stdout, logs go to stderr. A command replaces a file that is there only with `--force`. Exit codes are
+Data goes to stdout, logs go to stderr. A command replaces an existing file only with `--force`. Exit codes are
 in the manual page (`mocapd man`).
 """
 _CONFIGURATION = """\

@@ -10,9 +10,7 @@ from mocapd.child_process import child_command
 from mocapd.cli.options import (
     ConfigOption,
     SetOption,
-    VariantOption,
     effective_config,
-    refuse_variant,
 )
 from mocapd.errors import ConfigError, UsageError
 
@@ -29,9 +27,8 @@ def add_to(app: typer.Typer) -> None:
 
 def bench_command(
     tracker: Annotated[
-        str | None, typer.Option(help="Which tracker [default: all that the input suits]")
+        str | None, typer.Option(help="Which tracker [default: all that can track this input]")
     ] = None,
-    variant: VariantOption = None,
     capture: Annotated[
         str, typer.Option(help="A capture folder, or sim:SCENARIO.", metavar="FOLDER")
     ] = _DEFAULT,
@@ -40,24 +37,26 @@ def bench_command(
         bool, typer.Option("--live", help="Time the real daemon on simulated webcams instead.")
     ] = False,
     watched: Annotated[
-        bool, typer.Option("--watched", help="With --live: a client watches its page meanwhile.")
+        bool, typer.Option("--watched", help="With --live: a client has the daemon's page open.")
     ] = False,
     seconds: Annotated[float, typer.Option(help="How long --live runs [s].", min=1.0)] = 60.0,
     endurance: Annotated[
         float | None,
-        typer.Option(help="Run round and round for so long, as fast as it goes.", metavar="MIN"),
+        typer.Option(
+            help="Repeat the input as fast as possible for this long [min].", metavar="MIN"
+        ),
     ] = None,
     recording: Annotated[
         Path | None,
         typer.Option(
-            help="What an hour of the motion in this recording takes, and what a kill costs.",
+            help="Print the disk space of an hour of this motion, and the loss after a kill.",
             metavar="FILE",
         ),
     ] = None,
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
-    """Time trackers on decoded frames, stage by stage; or the whole daemon; or recording.
+    """Time each stage of the trackers on decoded frames, the whole daemon, or recording.
 
     Example: mocapd bench --tracker shirt --json
     """
@@ -65,7 +64,6 @@ def bench_command(
     from mocapd.capture.kinds.source_kinds import is_simulated
     from mocapd.outputs.output_table import zenoh_section
 
-    refuse_variant(variant)
     if recording is not None:
         _recording(recording)
         return

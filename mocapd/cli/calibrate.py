@@ -5,12 +5,15 @@ from typing import Annotated
 
 import typer
 
+from mocapd.app.setup.folder_calibration_run import FolderOptions, calibrate_folder
+from mocapd.cli.command_line.option_groups import spread_options
 from mocapd.cli.options import CameraOption, ConfigOption, ForceOption, SetOption, effective_config
+from mocapd.errors import UsageError
 
 
 def add_to(app: typer.Typer) -> None:
     """Register the command."""
-    app.command("calibrate")(calibrate)
+    app.command("calibrate")(spread_options(calibrate))
 
 
 def calibrate(
@@ -35,61 +38,8 @@ def calibrate(
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Open no browser: print the URL only.")
     ] = False,
-    from_folder: Annotated[
-        Path | None,
-        typer.Option(
-            help="No page: calibrate from recordings of the board, a video or a folder of pictures "
-            "per camera, named as the camera. Frames of one index belong together.",
-            metavar="DIR",
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help="From a folder: the rig to write (.json), or a calibration (.toml).",
-            metavar="FILE",
-        ),
-    ] = None,
-    size: Annotated[
-        str | None,
-        typer.Option("--board-size", help="Columns x rows of squares, as 4x5.", metavar="CxR"),
-    ] = None,
-    square: Annotated[float | None, typer.Option(help="Side of a square [m].")] = None,
-    board: Annotated[str, typer.Option(help="charuco or chessboard.")] = "charuco",
-    marker: Annotated[float, typer.Option(help="Side of a marker [m]; ChArUco only.")] = 0.0,
-    dictionary: Annotated[
-        str, typer.Option(help="The markers' dictionary; ChArUco only.")
-    ] = "DICT_4X4_1000",
-    inverted: Annotated[
-        bool, typer.Option("--inverted", help="White where other boards are black.")
-    ] = False,
-    legacy: Annotated[
-        bool, typer.Option("--legacy", help="The layout of OpenCV before 4.6.")
-    ] = False,
-    two_sided: Annotated[
-        bool,
-        typer.Option("--two-sided", help="The back bears the mirror image; ChArUco only."),
-    ] = False,
-    floor_frame: Annotated[
-        int | None,
-        typer.Option(
-            min=0,
-            help="Index of a frame in which the board lies on the floor, printed side (of two: FRONT) up: "
-            "there the world's origin is. Without it, up and floor are guessed.",
-        ),
-    ] = None,
-    strokes: Annotated[
-        Path | None,
-        typer.Option(
-            help="From a folder, into a .toml: pictures of the shirt, NAME.png of each camera with "
-            "NAME_strokes.png (0 none, 1..10 the colour id).",
-            metavar="DIR",
-        ),
-    ] = None,
-    as_json: Annotated[
-        bool,
-        typer.Option("--json", help="From a folder: print one JSON object of how well it fits."),
-    ] = False,
+    *,
+    from_folder: FolderOptions,
     force: ForceOption = False,
     config: ConfigOption = None,
     settings: SetOption = None,
@@ -97,7 +47,7 @@ def calibrate(
     """Calibrate cameras, room, colours and wearer, on a page in the browser.
 
     Attaches to the running daemon, else opens the cameras itself; prints the page's URL, and opens
-    the browser when there is a desktop. What was saved before stays until the new one is saved.
+    the browser when there is a desktop. The saved calibration stays until you save a new one.
 
     Example: mocapd calibrate
 
@@ -107,24 +57,16 @@ def calibrate(
     effective = effective_config(
         config, settings, cameras, state_dir=None if state_dir is None else str(state_dir)
     ).config
-    if from_folder is not None:
-        from mocapd.app.setup.folder_calibration_run import FolderOptions, calibrate_folder
-
-        options = FolderOptions(
-            from_folder, out, size, square, board, marker, dictionary, inverted, legacy, two_sided,
-            floor_frame, strokes, as_json, force,
-        )  # fmt: skip
-        calibrate_folder(options, effective)
+    if from_folder.folder is not None:
+        calibrate_folder(from_folder.folder, from_folder, effective, force=force)
         return
-    from mocapd.app.setup.setup_run import PageOptions, calibrate_page
-
-    if out is not None or strokes is not None or floor_frame is not None or as_json or force:
-        from mocapd.errors import UsageError
-
+    if from_folder.needs_folder or force:
         raise UsageError(
             "--out, --strokes, --floor-frame, --force and --json are for --from-folder",
             "command line",
             "leave them out, or add --from-folder DIR",
         )
+    from mocapd.app.setup.setup_run import PageOptions, calibrate_page
+
     wanted = PageOptions(step, demo, own_place=state_dir is not None, browser=not no_browser)
     raise typer.Exit(calibrate_page(wanted, effective))

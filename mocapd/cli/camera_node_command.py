@@ -28,7 +28,7 @@ def camera_node(
     ] = None,
     listen: Annotated[
         str | None,
-        typer.Option(help="Endpoint to be reached at, such as tls/0.0.0.0:7447: zenoh.listen."),
+        typer.Option(help="Endpoint to listen on, such as tls/0.0.0.0:7447: zenoh.listen."),
     ] = None,
     connect: Annotated[
         str | None,
@@ -44,8 +44,8 @@ def camera_node(
 ) -> None:
     """Send the pictures of this machine's webcams to a daemon on another one.
 
-    The JPEGs go as the cameras deliver them. It prints what to write as the source of each camera in the
-    configuration of the daemon. [[camera]], [zenoh] and [node] of the configuration are its own.
+    JPEGs are sent as the cameras deliver them. The command prints the source of each camera for the configuration of
+    the daemon. It reads [[camera]], [zenoh] and [node] of its own configuration.
 
     Example: mocapd camera-node --name attic --camera left=usb:1-3:046d:0825: --listen tls/0.0.0.0:7447
     """

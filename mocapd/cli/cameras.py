@@ -27,10 +27,10 @@ def cameras(
         ),
     ] = None,
 ) -> None:
-    """List the webcams, and why one cannot be used.
+    """List the webcams, with the reason if one cannot be used.
 
-    Each with node, name, vid:pid:serial, USB port and formats. The `source` of a camera goes into the config. Of a user
-    without a password at --at it is asked for, or read from the input.
+    Each with node, name, vid:pid:serial, USB port and formats. The `source` of a camera goes into the config. If --at has a
+    user without a password, the command asks for it, or reads it from the input.
 
     Example: mocapd cameras
     """

@@ -23,13 +23,15 @@ def check_config(
     config: ConfigOption = None,
     settings: SetOption = None,
     cameras: CameraOption = None,
-    changed: Annotated[bool, typer.Option("--changed", help="Only what is not built in.")] = False,
+    changed: Annotated[
+        bool, typer.Option("--changed", help="Only settings that differ from their defaults.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object.")] = False,
 ) -> None:
-    """Print each setting and where it came from, the calibration that `mocapd run` would use, and what
-    is permitted but unsafe. Passwords of cameras are not shown.
+    """Print each setting with its origin, the calibration that `mocapd run` would use, and unsafe settings.
+    Passwords of cameras are not shown.
 
-    Ends with 78 and one line when something is wrong.
+    Exit code 78 and one line if the configuration is invalid.
 
     Example: mocapd check-config --changed
     """

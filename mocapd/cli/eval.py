@@ -13,9 +13,7 @@ from mocapd.cli.options import (
     ConfigOption,
     ForceOption,
     SetOption,
-    VariantOption,
     effective_config,
-    refuse_variant,
 )
 from mocapd.errors import UsageError
 from mocapd.extras import require_extra
@@ -50,25 +48,11 @@ def evaluate_captures(
     force: ForceOption = False,
     config: ConfigOption = None,
     settings: SetOption = None,
-    variant: VariantOption = None,
-    compare: Annotated[str | None, typer.Option(hidden=True)] = None,
-    simulated: Annotated[str | None, typer.Option(hidden=True)] = None,
-    clothes: Annotated[str | None, typer.Option(hidden=True)] = None,
-    failures: Annotated[bool, typer.Option("--failures", hidden=True)] = False,
-    interruptions: Annotated[bool, typer.Option("--interruptions", hidden=True)] = False,
-    prediction: Annotated[bool, typer.Option("--prediction", hidden=True)] = False,
 ) -> None:
     """Track recorded captures offline and score them against their ground truth.
 
     Example: mocapd eval captures/office captures/gym --out scores
     """
-    refuse_variant(variant)
-    _refuse_moved("--compare", "lab.evaluation", compare)
-    _refuse_moved("--simulated", "lab.evaluation", simulated)
-    _refuse_moved("--clothes", "lab.evaluation", clothes)
-    _refuse_moved("--failures", "lab.failures", failures)
-    _refuse_moved("--interruptions", "lab.interruptions", interruptions)
-    _refuse_moved("--prediction", "lab.prediction", prediction)
     if not captures:
         raise UsageError("no capture is given", "mocapd eval", "name a folder that has a truth.npz")
     if out is not None:
@@ -109,13 +93,3 @@ def evaluate_captures(
         command = shlex.join([*words, "--out", os.path.relpath(out)])
         for path in score_page.write_page(out, results, name, joints.value, command, force):
             typer.echo(f"{path}: written", err=True)
-
-
-def _refuse_moved(option: str, module: str, value: str | bool | None) -> None:
-    """Raises UsageError for an option of the first release that has moved to a command of the source tree."""
-    if value:
-        raise UsageError(
-            f"{option} is no option of `mocapd eval` any more",
-            "command line",
-            f"in a checkout of mocapd's source run `python -m {module} --help`",
-        )

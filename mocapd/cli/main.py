@@ -24,12 +24,14 @@ def main() -> None:
 
     import mocapd.capture.environment  # noqa: F401  what cv2 reads while it is imported
     from mocapd.cli.care.completion import ready_to_complete
+    from mocapd.cli.command_line.removed_options import refuse_removed_options
     from mocapd.cli.command_list import app
     from mocapd.errors import MocapdError
 
     interruptible(sys.argv)
     ready_to_complete()
     try:
+        refuse_removed_options(sys.argv[1:])
         app(prog_name="mocapd")
     except MocapdError as error:
         print(f"mocapd: {error}", file=sys.stderr)

@@ -66,17 +66,6 @@ VrmOption = Annotated[
         metavar="FILE",
     ),
 ]
-VariantOption = Annotated[str | None, typer.Option("--variant", hidden=True)]
-
-
-def refuse_variant(variant: str | None) -> None:
-    """Raises UsageError for a removed option."""
-    from mocapd.config.removed_keys import REMOVED
-
-    if variant is not None:
-        raise UsageError(
-            "there is no --variant any more", "command line", REMOVED["tracker.variant"]
-        )
 
 
 def vrm_flags(vrm: Path | None) -> dict[str, str]:

@@ -11,10 +11,10 @@ def add_to(app: typer.Typer) -> None:
 
 
 def prepare(config: ConfigOption = None, settings: SetOption = None) -> None:
-    """Make now what the first start would make: compiled kernels and the pose database.
+    """Prepare the first start: compile the tracker and make the pose database.
 
-    About a minute, once on a machine and after an upgrade that changed them; a start then takes seconds. The Debian
-    package does so in the background when it is installed. `mocapd doctor` says whether it is done.
+    It takes about a minute, once on a machine and after some upgrades; a start then takes seconds. The Debian package
+    does it in the background when it is installed. `mocapd doctor` says whether it is finished.
 
     Example: mocapd prepare
     """

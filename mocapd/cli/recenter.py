@@ -11,10 +11,10 @@ def add_to(app: typer.Typer) -> None:
 
 
 def recenter(config: ConfigOption = None, settings: SetOption = None) -> None:
-    """Make the way the person faces now forward, in the running daemon.
+    """Set the direction that the person faces now as forward, in the running daemon.
 
-    Stand, and look straight ahead, in VR at what shall be ahead there. VRChat then turns the body to the headset, and in
-    SteamVR (vmt) it faces as the play area does.
+    Stand and look straight ahead; in VR, at the point that should be in front of you. VRChat then turns the body in the
+    direction of the headset, SteamVR (vmt) in that of the play area.
 
     Example: mocapd recenter
     """

@@ -31,8 +31,8 @@ def send_test_command(
 ) -> None:
     """Send a waving and stepping person to an output, without cameras: to test firewall and avatar.
 
-    Ends with 0 when it was sent and nothing refused, with 1 when nobody listens. Other machines may not report that.
-    With Zenoh, --port listens there for games, and --host joins the router there.
+    Exit code: 0 if all data was sent, 1 if no program listens. Other machines may not report the latter.
+    With Zenoh, --port is the port for games to connect to, and --host the address of a router to join.
 
     Example: mocapd send-test --output vrchat --host 192.168.1.20
     """

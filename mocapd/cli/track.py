@@ -10,9 +10,7 @@ from mocapd.cli.options import (
     ConfigOption,
     ForceOption,
     SetOption,
-    VariantOption,
     effective_config,
-    refuse_variant,
 )
 
 
@@ -40,7 +38,6 @@ def track(
     tracker: Annotated[
         str | None, typer.Option(help="Which tracker [default: that of the config]")
     ] = None,
-    variant: VariantOption = None,
     calibration: Annotated[
         Path | None,
         typer.Option(
@@ -69,7 +66,6 @@ def track(
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs
 
-    refuse_variant(variant)
     effective = effective_config(config, settings, tracker__name=tracker).config
     set_up_logs(effective.log_level)
     prepare_libraries(effective.cache_dir)

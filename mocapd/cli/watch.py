@@ -38,7 +38,9 @@ def watch(
     count: Annotated[
         int,
         typer.Option(
-            "--count", min=0, help="Stop after so many frames or, with --all, seconds; 0: never."
+            "--count",
+            min=0,
+            help="Stop after this number of frames or, with --all, seconds; 0: never.",
         ),
     ] = 0,
     timeout_s: Annotated[
@@ -47,8 +49,8 @@ def watch(
 ) -> None:
     """Print the frames of a running daemon.
 
-    It subscribes like any client, with what the configuration has of certificates and users ([zenoh]); the newest frame
-    wins. With --all it takes no frames, but what all daemons behind one router say of themselves.
+    It subscribes like any client, with the certificate and user of the configuration ([zenoh]), and skips to the
+    newest frame. With --all it prints the health messages of all daemons on the bus in place of frames.
 
     Example: mocapd watch --json | head -n 1
     """

@@ -12,9 +12,9 @@ def add_to(app: typer.Typer) -> None:
 
 
 def web_link(config: ConfigOption = None, settings: SetOption = None) -> None:
-    """Print what to open so that a game in the browser gets the frames of the running daemon.
+    """Print the address of a browser game that gets the frames of the running daemon.
 
-    One line for each site in web.allow_origins. What follows the # lets that site have the frames: give it to no other.
+    One line per site in web.allow_origins. The part after # is the key to the frames: give it to no other site.
 
     Example: mocapd web-link
     """

@@ -12,11 +12,11 @@ Side = Annotated[int, Meta(ge=16, le=8192)]
 class Params:
     """Settings of `mocapd camera-node` in addition to [[camera]] and [zenoh].
 
-    size_px: width and height to ask the webcams for [px]
-    jpeg_quality: of pictures that a camera does not deliver as JPEG, 1 to 100
+    size_px: width and height requested from the webcams [px]
+    jpeg_quality: JPEG quality for cameras that deliver no JPEG, 1 to 100
     paired_user: the client that may set the cameras' controls: a user of zenoh.password_file, or with
       zenoh.tls_require_client the name (CN) in the certificate; empty: none
-    router_decides: behind a router, where clients cannot be identified: take the orders that its access control permits
+    router_decides: behind a router, which hides the clients: accept all control messages that its access control permits
     """
 
     size_px: tuple[Side, Side] = (640, 480)

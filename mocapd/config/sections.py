@@ -36,13 +36,13 @@ def default_state_dir() -> Path:
 class ControlsSection(Controls):
     """Controls of a webcam; a missing value stays the camera's own.
 
-    auto_exposure, auto_wb, autofocus: whether the camera does it itself
+    auto_exposure, auto_wb, autofocus: true: the camera sets it automatically
     exposure: in the camera's unit, mostly 100 us
-    gain: without a unit
+    gain: in the camera's unit
     wb_temperature: [K]
-    focus: without a unit
+    focus: in the camera's unit
     dynamic_framerate: whether the camera may lower its rate in dim light
-    power_line_hz: the mains whose flicker the camera filters: 50 or 60, 0 for none
+    power_line_hz: mains frequency of the lamps, whose flicker the camera filters: 50, 60, or 0 for none
     """
 
 
@@ -51,12 +51,12 @@ class CameraSection:
     """One camera.
 
     id: its name in the rig file
-    source: what `mocapd cameras` or `camera-node` prints, a file, FOLDER#camN, a URL, sim:NAME#camN; the error of a wrong
-      one lists all forms
-    fps_hz: rate to ask a webcam for [Hz]
-    wait_s: how long its picture may come after the first one of the same moment [s], in place of bundler.wait_s; for one on a
-      network
-    white_balance: a picture of the shirt in this place's own light, with its `_strokes.png` in the same folder
+    source: the address that `mocapd cameras` or `camera-node` prints, a file, FOLDER#camN, a URL, or sim:NAME#camN; the error
+      for an invalid one lists all forms
+    fps_hz: rate requested from a webcam [Hz]
+    wait_s: how long to wait for a picture of this camera after the first picture of the same instant [s], in place of
+      bundler.wait_s; for network cameras
+    white_balance: a picture of the shirt in the light of this room, with its `_strokes.png` in the same folder
     """
 
     id: Annotated[str, Meta(min_length=1)]
@@ -71,8 +71,8 @@ class CameraSection:
 class BundlerSection:
     """How long the pictures of one moment wait for each other.
 
-    wait_s: how long a picture may come after the first one of its moment [s]; unset: as late as that camera usually is,
-      and half a frame more
+    wait_s: how long to wait for a picture after the first one of the same instant [s]; unset: the usual delay of that camera
+      plus half a frame
     """
 
     wait_s: Annotated[float, Meta(ge=0, le=1)] | None = None
@@ -82,11 +82,11 @@ class BundlerSection:
 class TrackerSection:
     """The tracker, and its assumptions about the wearer.
 
-    name: auto, by all cues that can run; shirt or markerless, by that alone; canned (moves by itself); wang2011, hecht2009,
+    name: auto uses all available cues; shirt or markerless, that cue alone; canned (moves by itself); wang2011, hecht2009,
       rao_hodges (as published)
     stature_m: the wearer's height without shoes [m]
-    coast_s: how long after the last evidence a pose is still predicted [s]
-    stuck_s: after so long in one step the tracker is held to be stuck, and the process ends with 70 [s]
+    coast_s: how long a pose is predicted after the last evidence [s]
+    stuck_s: if one step of the tracker takes longer, the process ends with exit code 70 [s]
     """
 
     name: str = "auto"

@@ -21,7 +21,7 @@ class Params:
 
     enabled: serve the page
     port: its TCP port; 0: a free one, printed at the start
-    allow_origins: sites whose pages may receive the frames, and nothing else, after `mocapd web-link`
+    allow_origins: sites whose pages may receive frames (and nothing else), with a link from `mocapd web-link`
     metrics: serve figures for Prometheus at /metrics, to clients with the key in metrics.key of state_dir
     """
 

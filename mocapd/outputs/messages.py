@@ -21,8 +21,12 @@ class OutputHealth(CountingMessage, frozen=True):
 
     name: Annotated[str, Meta(description="name of the output: `zenoh`, `osc`, ...")]
     sent: Annotated[Count, Meta(description="frames sent since the start")]
-    refused: Annotated[Count, Meta(description="frames that nobody took or the system refused")]
-    listeners: Annotated[int, Meta(description="how many listen; -1: the protocol cannot tell")]
+    refused: Annotated[
+        Count, Meta(description="frames without a receiver, or refused by the system")
+    ]
+    listeners: Annotated[
+        int, Meta(description="number of receivers; -1: unknown for this protocol")
+    ]
     detail: Annotated[str, Meta(description="one line for people")]
 
 
@@ -33,7 +37,7 @@ class Health(CountingMessage, frozen=True):
     version: Annotated[str, Meta(description="version of mocapd")]
     pid: Annotated[int, Meta(description="process id of the daemon")]
     started_unix_ns: Annotated[int, Meta(description="start of the daemon, Unix time [ns]")]
-    now_unix_ns: Annotated[int, Meta(description="when this was said, Unix time [ns]")]
+    now_unix_ns: Annotated[int, Meta(description="time of this message, Unix time [ns]")]
     tracker: Annotated[str, Meta(description="the tracker in use")]
     tracking: Annotated[str, Meta(description="`live`, `coasting` or `lost`")]
     rate_hz: Annotated[float, Meta(description="skeleton frames per second, lately [Hz]")]
@@ -45,7 +49,7 @@ class Health(CountingMessage, frozen=True):
     ]
     outputs: Annotated[tuple[OutputHealth, ...], Meta(description="every open output")] = ()
     detail: Annotated[
-        str, Meta(description="one line for people: what is wrong with it as a whole; mostly empty")
+        str, Meta(description="one line for people: a problem of the whole daemon; usually empty")
     ] = ""
     schema: Annotated[str, Meta(description=f"always `{HEALTH}`")] = HEALTH
     effort: Annotated[
@@ -74,7 +78,7 @@ class CameraStatus(CountingMessage, frozen=True):
     detail: Annotated[
         str,
         Meta(
-            description="one line for people: why it is not live, or what is wrong with its pictures or its port"
+            description="one line for people: why it is not live, or a problem of its pictures or its port"
         ),
     ]
     source: Annotated[str, Meta(description="device node, path or URL it is read from")]
@@ -170,7 +174,7 @@ class Facing(msgspec.Struct, frozen=True):
             description="turn about +Y that takes +Z to where the person looked, positive to its left, -180..180 [deg]"
         ),
     ]
-    at_unix_ns: Annotated[int, Meta(description="when it was said, Unix time [ns]")]
+    at_unix_ns: Annotated[int, Meta(description="time of the recentre, Unix time [ns]")]
     schema: Annotated[str, Meta(description=f"always `{FACING}`")] = FACING
 
 

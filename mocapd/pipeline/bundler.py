@@ -19,8 +19,7 @@ Clocks. Frames have capture times; timeouts use arrival times, `now_ns`. Live ca
 recordings in order of capture `now_ns` is omitted and defaults to the newest capture time.
 """
 
-import heapq
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from mocapd.clock import nanoseconds
@@ -228,13 +227,3 @@ class Bundler:
         self._last_set_ns = set_ns
         oldest_ns = min(frame.t_ns for frame in frames.values())
         return FrameSet(set_ns, frames, set_ns - oldest_ns)
-
-
-def bundle_recorded(
-    streams: Mapping[str, Iterable[Frame]], params: BundlerParams | None = None
-) -> Iterator[FrameSet]:
-    """The frame sets of recordings, each stream in order of capture; every frame, as fast as read."""
-    bundler = Bundler(streams, params)
-    for frame in heapq.merge(*streams.values(), key=lambda frame: frame.t_ns):
-        yield from bundler.add(frame)
-    yield from bundler.finish()

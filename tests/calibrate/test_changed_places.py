@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.bump.changed_places import Places, places_of
+from mocapd.calibrate.bump.changed_places import PlacesVerdict, places_of
 from mocapd.calibrate.consistency.findings import Mistake
 from mocapd.calibrate.consistency.hypotheses import exchanged_finding
 from mocapd.calibrate.consistency.room_judge import with_the_room
@@ -44,8 +44,8 @@ def room(stand: str) -> tuple[tuple[Camera, Camera], tuple[Bytes, Bytes]]:
 @pytest.mark.parametrize("stand", STANDS)
 def test_cameras_in_their_places_and_exchanged_ones_are_told_apart(stand: str) -> None:
     cameras, (a, b) = room(stand)
-    assert places_of(cameras, (a, b)) is Places.RIGHT
-    assert places_of(cameras, (b, a)) is Places.CHANGED
+    assert places_of(cameras, (a, b)) is PlacesVerdict.RIGHT
+    assert places_of(cameras, (b, a)) is PlacesVerdict.CHANGED
 
 
 def test_cameras_that_see_different_rooms_tell_nothing() -> None:
@@ -53,7 +53,7 @@ def test_cameras_that_see_different_rooms_tell_nothing() -> None:
     noise = np.random.default_rng(0).integers(0, 256, a.shape, dtype=np.uint8)
     dark = np.zeros_like(a)
     for other in (noise, dark, np.ascontiguousarray(a[::-1])):
-        assert places_of(cameras, (a, other)) is Places.UNKNOWN
+        assert places_of(cameras, (a, other)) is PlacesVerdict.UNKNOWN
 
 
 def test_the_room_says_that_a_picture_was_cut_and_takes_back_what_it_contradicts() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board.board_look import BoardObservation, Look, motion_px
+from mocapd.calibrate.board.board_instant import BoardInstant, BoardObservation, motion_px
 from mocapd.calibrate.board.board_sightings import BoardSightings
 from mocapd.calibrate.extrinsics.board_extrinsics import place_in_world, solve_extrinsics
 from mocapd.calibrate.extrinsics.live_extrinsics import PARAMS
@@ -12,11 +12,11 @@ from tests.calibrate.moving_board import BOARD_M, SPEC, Clock, Session, errors, 
 
 RIG = rig_of(3, 1.2)
 _FPS = 30.0
-_EVERY = 3  # frames between looks
+_EVERY = 3  # frames between instants
 
 
 def sightings_of(session: Session) -> BoardSightings:
-    """What the step Room collects from looks at the cameras' newest pictures, by their stamps."""
+    """What the step Room collects from instants at the cameras' newest pictures, by their stamps."""
     recordings, _ = record(session)
     collected = BoardSightings({camera.name: camera.size_px for camera in session.rig}, BOARD_M)
     before: dict[str, BoardObservation] = {}
@@ -29,7 +29,7 @@ def sightings_of(session: Session) -> BoardSightings:
                 moved_px = motion_px(before.get(name), view, t_ns)
                 seen[name] = BoardObservation(view, t_ns, moved_px)
         before.update(seen)
-        collected.offer(Look(index, t_ns, {}, seen))
+        collected.offer(BoardInstant(index, t_ns, {}, seen))
     return collected
 
 

@@ -49,7 +49,7 @@ import mocapd.kernels.locator as locator
 mocapd.__path__.append(str(folder))
 locator._PACKAGE = folder
 from mocapd.caller_kernels import twice
-from mocapd.kernels.compile_events import compile_events
+from lab.compile_events import compile_events
 with compile_events() as compiled:
     print(twice(3.0), *sorted(one.function for one in compiled if one.module.startswith("mocapd.")))
 """

@@ -1,6 +1,7 @@
 """Pairing by time: nearest partners, no longer a wait than needed, nothing lost silently."""
 
-from itertools import pairwise
+from collections.abc import Mapping
+from itertools import chain, pairwise
 
 import numpy as np
 import pytest
@@ -8,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mocapd.errors import ConfigError
-from mocapd.pipeline.bundler import Bundler, BundlerParams, bundle_recorded
-from mocapd.types import FrameSet
+from mocapd.pipeline.bundler import Bundler, BundlerParams
+from mocapd.types import Frame, FrameSet
 from tests.pipeline.free_running import MS, PERIOD_NS, FreeRunning, Released, frame, run_live
 
 SECOND = 1_000 * MS
@@ -241,6 +242,14 @@ def test_whatever_the_cameras_do(
         assert r.at_ns - r.complete_ns <= longest or r.at_ns == int(1.5 * SECOND)
 
 
+def bundled(streams: Mapping[str, list[Frame]]) -> list[FrameSet]:
+    """The frame sets of recorded streams, added in order of capture."""
+    bundler, sets = Bundler(streams), list[FrameSet]()
+    for one in sorted(chain(*streams.values()), key=lambda f: f.t_ns):
+        sets += bundler.add(one)
+    return [*sets, *bundler.finish()]
+
+
 @given(st.integers(0, PERIOD_NS), st.sampled_from([0.0, 0.1]), st.integers(0, 99))
 def test_recordings_give_every_frame_and_the_same_sets_each_time(
     phase_ns: int, drop: float, seed: int
@@ -251,7 +260,7 @@ def test_recordings_give_every_frame_and_the_same_sets_each_time(
             c.name: [f for _, f in c.arrivals(SECOND, rng)]
             for c in (FreeRunning("a", drop=drop), FreeRunning("b", phase_ns, drop=drop))
         }
-        sets = list(bundle_recorded(streams))
+        sets = bundled(streams)
         in_all = sum(len(frames) for frames in streams.values())
         assert in_all - sum(len(s.frames) for s in sets) <= 1 + round(drop * 10)
         return [(s.t_ns, tuple((f.camera, f.seq) for f in s.frames.values())) for s in sets]
@@ -264,7 +273,7 @@ def test_recordings_in_step_use_every_frame() -> None:
         name: [frame(name, k, offset + k * PERIOD_NS) for k in range(60)]
         for name, offset in (("a", 0), ("b", 10_500_000), ("c", 0))
     }
-    sets = list(bundle_recorded(streams))
+    sets = bundled(streams)
     assert len(sets) == 60
     assert all(len(s.frames) == 3 for s in sets)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.calibrate.bump.changed_places import Places, places_of
+from mocapd.calibrate.bump.changed_places import PlacesVerdict, places_of
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.clock import nanoseconds
 from mocapd.published.hecht2009.build import build_hecht2009_tracker
@@ -83,7 +83,7 @@ def test_a_close_pair_that_has_changed_places_is_told_by_the_room_and_harms_noth
     rig = film.known.rig
     assert rig is not None
     first, second = rig.cameras
-    for shown, places in ((film, Places.RIGHT), (exchanged, Places.CHANGED)):
+    for shown, places in ((film, PlacesVerdict.RIGHT), (exchanged, PlacesVerdict.CHANGED)):
         pictures = [shown.frames[0].frames[camera.name].pixels for camera in (first, second)]
         assert places_of((first, second), (pictures[0], pictures[1])) is places
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board.board_look import BoardObservation, Look
+from mocapd.calibrate.board.board_instant import BoardInstant, BoardObservation
 from mocapd.calibrate.board.board_sightings import BoardSightings
 from mocapd.calibrate.intrinsics.view_picking import rough_place
 from mocapd.calibration.board_spec import corners_m
@@ -154,22 +154,22 @@ def test_a_board_turned_over_slants_as_before_and_tells_something_new() -> None:
     before, after = next(pair for pair in seen if all(None not in v.values() for v in pair))
     sizes_px = {name: camera.size_px for name, camera in rig.items()}
     sightings = BoardSightings(sizes_px, corners_m(SPEC))
-    looks = []
+    instants = []
     for index, views in ((100, before), (200, after), (300, after)):
         observed = {
             name: BoardObservation(replace(view, index=index), 0, 0.0)
             for name, view in views.items()
             if view is not None
         }
-        looks.append(Look(index, 0, {}, observed))
-    for name, one in looks[0].observations.items():
-        other = looks[1].observations[name]
+        instants.append(BoardInstant(index, 0, {}, observed))
+    for name, one in instants[0].observations.items():
+        other = instants[1].observations[name]
         assert one.view.back != other.view.back
         here, there = (rough_place(x.view, corners_m(SPEC), (640, 480)) for x in (one, other))
         assert here is not None
         assert there is not None
         np.testing.assert_allclose(here, there, atol=0.02)
-    assert [sightings.offer(look) for look in looks] == [True, True, False]
+    assert [sightings.offer(instant) for instant in instants] == [True, True, False]
 
 
 def test_the_form_says_whether_there_is_a_back() -> None:

@@ -4,7 +4,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -19,27 +19,81 @@ if TYPE_CHECKING:
 _WORTH_SAYING = 0.1  # frames that a camera exposes later than the first
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FolderOptions:
-    """Command line options; None or "" when not given."""
+    """Options of the command line; None when not given."""
 
-    folder: Path
-    out: Path | None
-    size: str | None
-    square_m: float | None
-    board: str
-    marker_m: float
-    dictionary: str
-    inverted: bool
-    legacy: bool
-    two_sided: bool
-    floor_frame: int | None
-    strokes: Path | None
-    as_json: bool
-    force: bool
+    folder: Annotated[
+        Path | None,
+        typer.Option(
+            "--from-folder",
+            help="No page: calibrate from recordings of the board, a video or a folder of pictures "
+            "per camera, named as the camera. Frames of one index belong together.",
+            metavar="DIR",
+        ),
+    ] = None
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="From a folder: the rig to write (.json), or a calibration (.toml).",
+            metavar="FILE",
+        ),
+    ] = None
+    size: Annotated[
+        str | None,
+        typer.Option("--board-size", help="Columns x rows of squares, as 4x5.", metavar="CxR"),
+    ] = None
+    square_m: Annotated[float | None, typer.Option("--square", help="Side of a square [m].")] = None
+    board: Annotated[str, typer.Option(help="charuco or chessboard.")] = "charuco"
+    marker_m: Annotated[
+        float, typer.Option("--marker", help="Side of a marker [m]; ChArUco only.")
+    ] = 0.0
+    dictionary: Annotated[str, typer.Option(help="The markers' dictionary; ChArUco only.")] = (
+        "DICT_4X4_1000"
+    )
+    inverted: Annotated[
+        bool, typer.Option("--inverted", help="White where other boards are black.")
+    ] = False
+    legacy: Annotated[bool, typer.Option("--legacy", help="The layout of OpenCV before 4.6.")] = (
+        False
+    )
+    two_sided: Annotated[
+        bool,
+        typer.Option(
+            "--two-sided", help="The board has the mirror image on its back; ChArUco only."
+        ),
+    ] = False
+    floor_frame: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            help="Index of a frame in which the board lies on the floor, printed side (of two: FRONT) up: "
+            "there the world's origin is. Without it, up and floor are guessed.",
+        ),
+    ] = None
+    strokes: Annotated[
+        Path | None,
+        typer.Option(
+            help="From a folder, into a .toml: pictures of the shirt, NAME.png of each camera with "
+            "NAME_strokes.png (0 none, 1..10 the colour id).",
+            metavar="DIR",
+        ),
+    ] = None
+    as_json: Annotated[
+        bool,
+        typer.Option("--json", help="From a folder: print one JSON object of how well it fits."),
+    ] = False
+
+    @property
+    def needs_folder(self) -> bool:
+        """True if an option is given that only --from-folder has a use for."""
+        paths = self.out is not None or self.strokes is not None
+        return paths or self.floor_frame is not None or self.as_json
 
 
-def calibrate_folder(options: FolderOptions, config: "Config") -> None:
+def calibrate_folder(
+    folder: Path, options: FolderOptions, config: "Config", *, force: bool
+) -> None:
     """Detects the board, solves, writes the file. Raises MocapdError and then changes no file."""
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs
@@ -54,12 +108,12 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
     from mocapd.calibration.calibration_writing import CALIBRATION_KIND
     from mocapd.output_file import OutputFile
 
-    read = (options.folder,) if options.strokes is None else (options.folder, options.strokes)
+    read = (folder,) if options.strokes is None else (folder, options.strokes)
     kind = CALIBRATION_KIND if out.suffix == ".toml" else RIG
-    target = OutputFile(out, kind, options.force, inputs=read)
+    target = OutputFile(out, kind, force, inputs=read)
     target.check()
     with ProgressBars() as progress:
-        result = solve(options.folder, spec, progress, options.floor_frame)
+        result = solve(folder, spec, progress, options.floor_frame)
     result = _with_notes(
         result, _missing_recordings(result.rig.names, [c.id for c in config.camera])
     )
@@ -71,7 +125,7 @@ def calibrate_folder(options: FolderOptions, config: "Config") -> None:
         if strokes is not None:
             result = _with_notes(result, _missing_strokes(set(result.rig.names) - set(pictures)))
         floor_known = options.floor_frame is not None
-        save_from_folder(out, result, options.folder, floor_known, pictures, config.camera)
+        save_from_folder(out, result, folder, floor_known, pictures, config.camera)
     else:
         write_rig(target, result.rig)
     for note in result.notes:

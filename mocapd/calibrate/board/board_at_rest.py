@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.board.board_look import BoardObservation, Look
+from mocapd.calibrate.board.board_instant import BoardInstant, BoardObservation
 from mocapd.calibrate.extrinsics.board_extrinsics import SceneExtrinsics, with_board
 from mocapd.calibrate.extrinsics.world_frame import camera_centres
 from mocapd.calibration.board_spec import centre_m
@@ -14,7 +14,7 @@ from mocapd.types import Floats
 
 LONG_NS = 1_500_000_000  # after so long at rest the user has laid it down
 _SAME_PX = 2.0  # corners that move less are of the board at rest
-_FEWEST = 3  # looks to average
+_FEWEST = 3  # instants to average
 _LEVEL_RAD = 0.9  # from the up direction estimated from the cameras, which look down
 _ROLL_RAD = 0.26  # of a camera about its axis: they stand upright on shelves and tripods
 _UNDER_M = 0.1  # the floor is at least this far below the earlier places of the board
@@ -22,41 +22,41 @@ _ABOVE_M = 0.2  # the lowest camera is at least this far above the floor
 
 
 class BoardAtRest:
-    """Collects looks for as long as the board does not move."""
+    """Collects instants for as long as the board does not move."""
 
     def __init__(self) -> None:
-        self._looks: list[Look] = []
+        self._instants: list[BoardInstant] = []
         self._observations: dict[str, list[BoardObservation]] = {}
 
     @property
     def since_ns(self) -> int:
         """Duration at rest [ns]."""
-        return self._looks[-1].t_ns - self._looks[0].t_ns if self._looks else 0
+        return self._instants[-1].t_ns - self._instants[0].t_ns if self._instants else 0
 
     @property
     def has_enough(self) -> bool:
-        """Whether enough looks show the board at rest."""
-        return len(self._looks) >= _FEWEST
+        """Whether enough instants show the board at rest."""
+        return len(self._instants) >= _FEWEST
 
-    def take(self, look: Look, still: Mapping[str, bool]) -> None:
-        """Add a look; `still[camera]`: whether the board is at rest in that camera."""
-        at_rest = {name: now for name, now in look.observations.items() if still[name]}
+    def take(self, instant: BoardInstant, still: Mapping[str, bool]) -> None:
+        """Add an instant; `still[camera]`: whether the board is at rest in that camera."""
+        at_rest = {name: now for name, now in instant.observations.items() if still[name]}
         if not at_rest:
             self.forget()
             return
         if any(self._has_moved(name, now) for name, now in at_rest.items()):
             self.forget()
-        self._looks.append(look)
+        self._instants.append(instant)
         for name, now in at_rest.items():
             self._observations.setdefault(name, []).append(now)
 
     def forget(self) -> None:
         """Start over after a movement."""
-        self._looks, self._observations = [], {}
+        self._instants, self._observations = [], {}
 
     def views(self) -> dict[str, BoardView]:
-        """By camera the mean of its corners, under the index of the newest look."""
-        index = self._looks[-1].index
+        """By camera the mean of its corners, under the index of the newest instant."""
+        index = self._instants[-1].index
         return {
             name: _mean([observation.view for observation in own], index)
             for name, own in self._observations.items()

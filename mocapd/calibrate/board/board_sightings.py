@@ -1,4 +1,4 @@
-"""Sightings: looks in which several cameras show the board at rest; the input of the extrinsics."""
+"""Sightings: instants in which several cameras show the board at rest; the input of the extrinsics."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.board.board_look import BoardObservation, Look
+from mocapd.calibrate.board.board_instant import BoardInstant, BoardObservation
 from mocapd.calibrate.intrinsics.view_picking import rough_place
 from mocapd.types import Floats
 
@@ -80,9 +80,9 @@ class BoardSightings:
         """By camera the largest motion of a board at rest [px per 1/30 s]."""
         return {name: self._params.most_motion * size[0] for name, size in self._sizes_px.items()}
 
-    def offer(self, look: Look) -> bool:
-        """Keep the look if two cameras show the board at rest at a new place."""
-        now = look.observations
+    def offer(self, instant: BoardInstant) -> bool:
+        """Keep the instant if two cameras show the board at rest at a new place."""
+        now = instant.observations
         still = sorted(name for name in now if self.still(name, now[name]))
         times = [now[name].t_ns for name in still]
         if len(still) < 2 or max(times) - min(times) > self._params.most_spread_s * 1e9:
@@ -105,7 +105,7 @@ class BoardSightings:
             self._places[pair].append(place)
             self._new[pair] += 1
         for name in still:
-            self._views[name][look.index] = now[name].view
+            self._views[name][instant.index] = now[name].view
         return True
 
     def add_alone(self, name: str, view: BoardView) -> BoardView:

@@ -17,7 +17,7 @@ from mocapd.geometry.camera_model import centre, rays
 from mocapd.types import Bytes, Camera, Floats
 
 
-class Places(StrEnum):
+class PlacesVerdict(StrEnum):
     """`unknown`: too few points are visible in both."""
 
     UNKNOWN = "unknown"
@@ -42,7 +42,7 @@ def places_of(
     cameras: tuple[Camera, Camera],
     pictures: tuple[Bytes, Bytes],
     params: PlacesParams | None = None,
-) -> Places:
+) -> PlacesVerdict:
     """Compares two cameras with their pictures (h,w,3) BGR, each of its camera's size."""
     p = params if params is not None else PlacesParams()
     features = room_features(pictures[0], p), room_features(pictures[1], p)
@@ -51,10 +51,10 @@ def places_of(
 
 def places_by_matches(
     cameras: tuple[Camera, Camera], px: tuple[Floats, Floats], params: PlacesParams
-) -> Places:
+) -> PlacesVerdict:
     """The same from given matches (N,2) and (N,2) [px]."""
     if len(px[0]) < params.least:
-        return Places.UNKNOWN
+        return PlacesVerdict.UNKNOWN
 
     def decides(fitting: int, otherwise: int) -> bool:
         return fitting >= params.least and fitting > params.times * (otherwise + 1)
@@ -63,10 +63,10 @@ def places_by_matches(
     straight = fitting_points((first, second), px, params)
     crossed = fitting_points((second, first), px, params)
     if decides(straight, crossed):
-        return Places.RIGHT
+        return PlacesVerdict.RIGHT
     if decides(crossed, straight):
-        return Places.CHANGED
-    return Places.UNKNOWN
+        return PlacesVerdict.CHANGED
+    return PlacesVerdict.UNKNOWN
 
 
 @dataclass(frozen=True, slots=True, eq=False)

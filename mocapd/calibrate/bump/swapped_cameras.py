@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
-from mocapd.calibrate.bump.changed_places import Places, PlacesParams, places_of
+from mocapd.calibrate.bump.changed_places import PlacesParams, PlacesVerdict, places_of
 from mocapd.clock import nanoseconds
 from mocapd.types import Camera, Frame
 
@@ -26,7 +26,7 @@ class _Pair:
     """State of two cameras; looks: comparisons of their points; next_ns: time of the next one."""
 
     cameras: tuple[Camera, Camera]
-    places: Places = Places.UNKNOWN
+    places: PlacesVerdict = PlacesVerdict.UNKNOWN
     is_by_people: bool = False  # evidence of people that they changed places
     looks: int = 0
     next_ns: int = 0
@@ -36,9 +36,9 @@ class _Pair:
         self.names = self.cameras[0].name, self.cameras[1].name
 
     def is_due(self, t_ns: int) -> bool:
-        if t_ns < self.next_ns or self.places is Places.RIGHT:
+        if t_ns < self.next_ns or self.places is PlacesVerdict.RIGHT:
             return False
-        return self.places is Places.CHANGED or self.looks < _LOOKS
+        return self.places is PlacesVerdict.CHANGED or self.looks < _LOOKS
 
 
 class SwappedCameras:
@@ -57,7 +57,7 @@ class SwappedCameras:
         """The camera whose calibration fits this one's pictures, by points or people: its memory is of the wrong
         place."""
         for pair in self._pairs:
-            if pair.places is Places.CHANGED and camera in pair.names:
+            if pair.places is PlacesVerdict.CHANGED and camera in pair.names:
                 return pair.names[pair.names[0] == camera]
         return None
 
@@ -88,8 +88,8 @@ class SwappedCameras:
     def examine_again(self, camera: str) -> None:
         """Reset the evidence of points and people, after the user plugged the camera in again at its place."""
         for pair in self._pairs:
-            if camera in pair.names and pair.places is Places.CHANGED:
-                pair.places, pair.is_by_people = Places.UNKNOWN, False
+            if camera in pair.names and pair.places is PlacesVerdict.CHANGED:
+                pair.places, pair.is_by_people = PlacesVerdict.UNKNOWN, False
                 pair.looks = pair.next_ns = 0
 
     def compare_points(self, newest: Mapping[str, Frame]) -> None:
@@ -101,7 +101,7 @@ class SwappedCameras:
             pair.looks += 1
             pair.next_ns = first.t_ns + nanoseconds(_AGAIN_S)
             places = places_of(pair.cameras, (first.pixels, second.pixels), self._params)
-            if places is not Places.UNKNOWN:
+            if places is not PlacesVerdict.UNKNOWN:
                 pair.places, pair.is_by_people = places, False
             return
 
@@ -110,8 +110,8 @@ class SwappedCameras:
         groups = [set(names) for names in exchanged]
         for pair in self._pairs:
             if set(pair.names) in groups:
-                pair.is_by_people |= pair.places is not Places.CHANGED
-                pair.places = Places.CHANGED
+                pair.is_by_people |= pair.places is not PlacesVerdict.CHANGED
+                pair.places = PlacesVerdict.CHANGED
             elif pair.is_by_people:
-                pair.places, pair.is_by_people = Places.UNKNOWN, False
+                pair.places, pair.is_by_people = PlacesVerdict.UNKNOWN, False
         self._mixed = frozenset(name for group in groups if len(group) > 2 for name in group)

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from itertools import combinations
 
 from mocapd.calibrate.bump.changed_places import (
-    Places,
     PlacesParams,
+    PlacesVerdict,
     matching_points,
     places_by_matches,
     room_features,
@@ -36,7 +36,7 @@ def with_the_room(
             continue
         pair, px = (cameras[i], cameras[j]), matching_points((a, b), params)
         places = places_by_matches(pair, px, params)
-        if places is Places.RIGHT:
+        if places is PlacesVerdict.RIGHT:
             out = [
                 one
                 for one in out
@@ -45,7 +45,7 @@ def with_the_room(
             ]
         elif findings:
             continue
-        elif places is Places.CHANGED:
+        elif places is PlacesVerdict.CHANGED:
             return (exchanged_finding(*names),)
         else:
             verdict = judge_room(pair, px)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mocapd.calibrate.board.board_look import BoardObservation, Look
+from mocapd.calibrate.board.board_instant import BoardInstant, BoardObservation
 from mocapd.calibrate.board.board_sightings import BoardSightings, Views
 from mocapd.calibrate.extrinsics.pose_graph import FEWEST_SHARED
 from mocapd.calibration.board_spec import BoardSpec, corners_m
@@ -63,9 +63,9 @@ class BoardCollection:
         )
         return float(np.mean(np.minimum(shares, 1.0)))
 
-    def offer(self, look: Look) -> None:
-        """A further look at the board."""
-        self._own += self._sightings.offer(look)
+    def offer(self, instant: BoardInstant) -> None:
+        """Add an instant."""
+        self._own += self._sightings.offer(instant)
 
     def try_now(self) -> None:
         """Record an attempt with these: the next one needs more."""

@@ -1,6 +1,6 @@
 """Tracks the wearer in each camera alone: body, classified patches and marks, before extrinsics exist."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -130,12 +130,3 @@ class PatchTracks:
                 )
         self.observations.append(sightings)
         return sightings
-
-    def add_all(
-        self, frames: Iterable[FrameSet], progress: Callable[[int], None] | None = None
-    ) -> None:
-        """Track all of a recording."""
-        for i, frame in enumerate(frames):
-            self.add(frame)
-            if progress is not None:
-                progress(i + 1)

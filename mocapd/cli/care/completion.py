@@ -20,10 +20,10 @@ def add_to(app: typer.Typer) -> None:
 
 
 def completion(shell: Annotated[Shell, typer.Argument(help="Which shell.")]) -> None:
-    """Print what has a shell complete at Tab.
+    """Print the completion script of a shell.
 
-    For bash into ~/.local/share/bash-completion/completions/mocapd, for zsh into a file _mocapd of a folder in $fpath, for
-    fish into ~/.config/fish/completions/mocapd.fish.
+    Save it for bash as ~/.local/share/bash-completion/completions/mocapd, for zsh as _mocapd in a folder of $fpath, for
+    fish as ~/.config/fish/completions/mocapd.fish.
 
     Example: mocapd completion bash > ~/.local/share/bash-completion/completions/mocapd
     """

@@ -24,11 +24,11 @@ def doctor(
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
-    """Say what keeps mocapd from tracking here.
+    """Find what keeps mocapd from tracking on this machine, and the remedy.
 
-    And what would mend it. Rights, webcams, USB bandwidth, the calibration, ports, folders and their room,
-    processor, clock and libraries: a line each, `ok`, `warn` or `bad`. Changes nothing, and takes no picture.
-    Ends with 1 when something is bad.
+    Checks permissions, webcams, USB bandwidth, calibration, ports, folders and their free space, processor, clock and
+    libraries. Each check prints a line: `ok`, `warn` or `bad`. It changes nothing and takes no picture. Exit code 1 if
+    a check is bad.
 
     Example: mocapd doctor | grep -v ^ok
     """

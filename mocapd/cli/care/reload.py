@@ -13,9 +13,9 @@ def add_to(app: typer.Typer) -> None:
 def reload(config: ConfigOption = None, settings: SetOption = None) -> None:
     """Have the running daemon read its config again.
 
-    And its calibration, from the same file as at its start. The stream continues, except while cameras are closed and
-    opened. All of it is checked first: an error names its key, and the daemon continues unchanged; the exit code is
-    then that of `mocapd run`, such as 78. Changes that need a restart are named.
+    It also reads its calibration again. The stream continues, except for a moment in which the cameras are opened again.
+    After an error, which names the key, the daemon continues unchanged, and the exit code is that of `mocapd run`, such
+    as 78. Changes that need a restart are named.
 
     Example: mocapd reload
     """

@@ -39,11 +39,12 @@ def status(
 ) -> None:
     """Print the state of the running daemon.
 
-    State, tracker, rate, latency, cameras, outputs, calibration, last trouble. Ends with 0 when it tracks, or
-    waits for a person; 150 when it cannot track: it is still starting, or no camera delivers;
-    151 when it is too slow: it skips a large share of the pictures;
-    3 when none is running; 4 when one does not answer, or is another user's. Of several running daemons it shows
-    the one of this configuration, else all. With --all the worst of those on the bus counts.
+    State, tracker, rate, latency, cameras, outputs, calibration, last trouble. If several daemons run, it shows the one
+    of this configuration, else all.
+
+    Exit code: 0 tracks or waits for a person; 150 cannot track (still starting, or no camera delivers); 151 too slow
+    (skips many pictures); 3 no daemon runs; 4 no answer, or the daemon of another user. With --all it is the worst on
+    the bus.
 
     Example: mocapd status --json | jq .state
     """

@@ -46,11 +46,11 @@ def record(
     config: ConfigOption = None,
     settings: SetOption = None,
 ) -> None:
-    """Record what a running daemon publishes into one MCAP file.
+    """Record the frames of a running daemon in an MCAP file.
 
-    Frames with rest skeleton and calibration; with --pictures also the cameras' pictures, from the daemon's page,
-    into a file that only you can read. The daemon goes on as it is. What was recorded more than a second
-    before a crash or a kill can be read. Ctrl-C ends it.
+    Includes the rest skeleton and the calibration; with --pictures also the cameras' pictures, from the daemon's
+    page, and then only you can read the file. The daemon is not affected. After a crash at most the last second
+    is lost. Ctrl-C ends the recording.
 
     Example: mocapd record training.mcap --seconds 60
     """

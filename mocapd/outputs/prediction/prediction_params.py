@@ -10,9 +10,9 @@ from msgspec import Meta
 class PredictionParams:
     """Whether the outputs send predicted poses.
 
-    hz: send so many predicted poses a second, also between the cameras' frames [Hz]; 0: each pose as it was measured
-    ahead_ms: with hz, how long after a pose is sent it will be on the screen [ms]
-    outputs: which outputs do so; empty: all. Leave out zenoh where you record
+    hz: number of predicted poses per second, also between the cameras' frames [Hz]; 0: each pose as measured
+    ahead_ms: with hz, the time from sending a pose until it is on the screen [ms]
+    outputs: outputs with prediction; empty: all. Omit zenoh if you record
     """
 
     hz: Annotated[float, Meta(ge=0, le=240)] = 0.0

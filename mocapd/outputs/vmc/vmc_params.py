@@ -21,13 +21,13 @@ class Params:
     """How the person is sent. Raises ConfigError for a destination, InputError for a `.vrm` file that does not do.
 
     destinations: list of `address:port`, numeric addresses only
-    port_step: VMC knows no persons, so person n is sent to the port that is so many times n higher
-    root: which carries the way over the floor: `hips`, as every receiver reads them, or `root`
+    port_step: VMC has no person numbers, so person n is sent to the configured port plus n times this
+    root: which bone has the motion over the floor: `hips`, which every receiver supports, or `root`
     turn: 180 for a receiver that shows the avatar from behind [degrees]
     yaw_deg: additional turn, counter-clockwise from above [degrees]
     mirror: as in a mirror: the person's left is the avatar's right
-    bundle: two, of at most 1472 bytes each; one, which VSeeFace wants; or off, for receivers that read no bundles
-    rate_hz: at most so many frames per second [Hz]
+    bundle: two, of at most 1472 bytes each; one, for VSeeFace; or off, for receivers that read no bundles
+    rate_hz: maximum number of frames per second [Hz]
     vrm: a `.vrm` file; its bone lengths are sent instead of the wearer's
     """
 

@@ -27,8 +27,8 @@ Pose = tuple[Vector, Quaternion]
 class Params:
     """What goes to SteamVR. Raises ConfigError for a destination that does not do.
 
-    destination: where the driver VMT listens, `address:port`, numeric addresses only
-    anchor: `room`: mocapd's origin is that of SteamVR's play area; `headset`: the body hangs below the headset
+    destination: address of the driver VMT, `address:port`, numeric addresses only
+    anchor: `room`: mocapd's origin is that of SteamVR's play area; `headset`: positions are relative to the headset
     """
 
     destination: str = "127.0.0.1:39570"

@@ -37,10 +37,10 @@ class Params:
 
     destination: where VRChat listens, `address:port`, numeric addresses only; `auto`: found in the local network, needs the
       extra `mocapd[vrchat]`
-    trackers: what is sent: hip, feet, chest, knees, elbows; fewer good ones do better than all
-    head: send where the head is, by which VRChat moves the others to the headset
+    trackers: which trackers are sent: hip, feet, chest, knees, elbows; a few good ones work better than all
+    head: send the position of the head, by which VRChat aligns the body with the headset
     rate_hz: frames a second at most [Hz]
-    yaw_deg: turns everything about the vertical, to the person's left [deg]
+    yaw_deg: rotates all trackers about the vertical, to the person's left [deg]
     """
 
     destination: str = "127.0.0.1:9000"

@@ -27,18 +27,18 @@ PathText = Annotated[str, Meta(extra={"is_path": True})]
 
 @dataclass(frozen=True, slots=True)
 class Params:
-    """How the daemon is on Zenoh. Raises ConfigError naming the value and the mend.
+    """The daemon's Zenoh session. Raises ConfigError with the value and the remedy.
 
     format: `msgpack` or `json`
     port: TCP port on 127.0.0.1; 7447 is also the usual port of a Zenoh router
     listen: endpoints to listen on instead, such as `tls/0.0.0.0:7447`
-    connect: endpoints of a router to join, such as `tcp/127.0.0.1:7447`; then nothing listens here
+    connect: endpoints of a router to connect to, such as `tcp/127.0.0.1:7447`; the daemon then opens no port
     connect_timeout_s: how long to try to reach that router [s]
-    allow_unencrypted: permit `tcp/` beyond this machine
-    tls_certificate, tls_private_key: PEM files of this daemon, for `tls/` in `listen`, or for a router that asks for them
-    tls_root_ca: PEM file of the authority that signed the other side
-    tls_require_client: let in only clients with a certificate of `tls_root_ca`
-    password_file: let in only users of this file, lines `user:password` (use it with `tls/`)
+    allow_unencrypted: permit unencrypted `tcp/` to other machines
+    tls_certificate, tls_private_key: PEM files of this daemon, for `tls/` in `listen`, or for a router that requires them
+    tls_root_ca: PEM file of the authority that signed the certificate of the other side
+    tls_require_client: accept only clients with a certificate of `tls_root_ca`
+    password_file: accept only the users in this file, lines `user:password` (use it with `tls/`)
     """
 
     format: str = "msgpack"

@@ -23,7 +23,7 @@ from mocapd.shirt.pose_database.idmap_index import (
     fit_projection,
     nearest_centre,
 )
-from mocapd.shirt.pose_database.idmap_render_kernels import CANVAS, render_poses
+from mocapd.shirt.pose_database.idmap_render_kernels import CANVAS, RenderedPoses, render_poses
 from mocapd.shirt.pose_database.key_poses import ARMS, TORSOS
 from mocapd.shirt.pose_database.pose_sampling import (
     LowDispersionCube,
@@ -156,15 +156,6 @@ def content_hash(params: DatabaseParams) -> str:
     return digest.hexdigest()[:32]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RenderedPoses:
-    """Packed id maps (N, PACKED) of poses, with root_m (N,3) and side_rad (N,) of each."""
-
-    packed_maps: Bytes
-    root_m: Singles
-    side_rad: Singles
-
-
 def render(
     poses: PoseSet,
     model: BodyModel,
@@ -187,7 +178,7 @@ def render(
         render_poses(
             poses.local_xyzw[part], poses.camera_from_root_xyzw[part], body, plain(model.skin),
             model.triangles, colour, is_shirt, model.parents, params.focal_px, params.distance_m,
-            out.packed_maps[part], out.root_m[part], out.side_rad[part],
+            RenderedPoses(out.packed_maps[part], out.root_m[part], out.side_rad[part]),
         )  # fmt: skip
 
     parts = [slice(a, min(a + _CHUNK, n)) for a in range(0, n, _CHUNK)]

@@ -1,6 +1,6 @@
 """Drawing the shirt of a pose as a 40x40 id map, many poses in a row."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -18,6 +18,14 @@ Bytes = NDArray[np.uint8]
 CANVAS = 80  # [px] the shirt is drawn at twice the map's resolution, then cropped as a query is
 
 
+class RenderedPoses(NamedTuple):
+    """Id maps of N poses, each with the place of the hips and the size of its crop."""
+
+    packed_maps: Bytes  # (N, SIZE*SIZE/2)
+    root_m: NDArray[np.float32]  # (N,3) hips from the ray through the crop's centre; z: depth
+    side_rad: NDArray[np.float32]  # (N,) side of the crop [px] over the focal length
+
+
 @njit(cache=True, nogil=True)
 def render_poses(
     local_xyzw: NDArray[np.float32],
@@ -30,17 +38,14 @@ def render_poses(
     parents: NDArray[np.int64],
     focal_px: float,
     distance_m: float,
-    out: Bytes,
-    root_m: NDArray[np.float32],
-    side_rad: NDArray[np.float32],
+    out: RenderedPoses,
 ) -> None:
-    """Packed id maps out (N, SIZE*SIZE/2) of N poses, the middle of the trunk on the optical axis.
+    """Draw N poses into `out`, the middle of the trunk on the optical axis.
 
-    root_m (N,3): the hips joint relative to the ray through the crop's centre, its depth as third
-    coordinate; side_rad (N,): the crop's side [px] over the focal length.
     colour (T,): of the triangles; is_shirt (V,): the vertices whose box the canvas is fitted to.
     """
     vertices, rest, _ = body
+    packed_maps, root_m, side_rad = out
     J, V = rest.shape[0], vertices.shape[0]
     R, joints, turned = np.empty((J, 3, 3)), np.empty((J, 3)), np.empty((J, 4))
     local = np.empty((J, 4))
@@ -81,7 +86,7 @@ def render_poses(
         small[:] = 0
         if side > 0.0:
             resample(ids, cx, cy, side, small)
-        pack(small, out[n])
+        pack(small, packed_maps[n])
         # the crop's centre back on the image plane, in focal lengths
         middle_x = ((cx - 0.5 * (CANVAS - 1)) / scale + 0.5 * (x0 + x1)) / focal_px
         middle_y = ((cy - 0.5 * (CANVAS - 1)) / scale + 0.5 * (y0 + y1)) / focal_px

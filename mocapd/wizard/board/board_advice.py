@@ -11,7 +11,7 @@ from mocapd.calibrate.board.board_detection import (
     Reason,
     settle_variant,
 )
-from mocapd.calibrate.board.board_look import Look
+from mocapd.calibrate.board.board_instant import BoardInstant
 from mocapd.calibrate.board.detection_diagnostics import (
     FIX,
     TELLING,
@@ -58,10 +58,10 @@ class BoardAdvice:
         self._begun_ns: int | None = None
         self._free_ns = 0
 
-    def take(self, look: Look) -> None:
+    def take(self, instant: BoardInstant) -> None:
         """Note the cameras that see the board."""
-        for name in look.observations:
-            self._saw_ns[name] = look.t_ns
+        for name in instant.observations:
+            self._saw_ns[name] = instant.t_ns
             self._diagnoses.pop(name, None)
 
     def forget(self) -> None:

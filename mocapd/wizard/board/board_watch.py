@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from mocapd.calibrate.board.board_detection import BoardDetector
-from mocapd.calibrate.board.board_look import BoardObservation, Look, motion_px
+from mocapd.calibrate.board.board_instant import BoardInstant, BoardObservation, motion_px
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Floats, Frame
@@ -51,7 +51,7 @@ class BoardWatch:
         self.newest = {}
         self._left = []
 
-    def look(self) -> Look | None:
+    def instant(self) -> BoardInstant | None:
         """Search a few pictures; returns the instant once all of its pictures have been searched."""
         if not self._left and not self._begin():
             return None
@@ -62,7 +62,7 @@ class BoardWatch:
             return None
         t_ns = max(frame.t_ns for frame in self._frames.values())
         self.newest |= self._observations
-        return Look(self._index, t_ns, self._frames, self._observations)
+        return BoardInstant(self._index, t_ns, self._frames, self._observations)
 
     def shapes(self, now_ns: int, still_px: Mapping[str, float]) -> dict[str, tuple[Shape, ...]]:
         """The newest corners: good where they move less than `still_px`, else a hint."""

@@ -19,8 +19,8 @@ from mocapd.session.tracker_setup import ReadyTracker, cache_resources, ready_tr
 from mocapd.trackers.registry import shirt_tracker
 from mocapd.types import BodyState, Bytes, Rig, Skeleton
 from mocapd.wizard.body.measured_body import body_picture
+from mocapd.wizard.camera_filter import CameraFilter
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.only_cameras import OnlyCameras
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Tell
 from mocapd.wizard.visibility_timeout import VisibilityTimeout
@@ -119,7 +119,7 @@ def _watch(
     """Track the hub's frames until there are enough observations; False when stopped. Raises InputError."""
     tracker, shape = ready.tracker, ready.shape
     collector = FrameCollector(rig.names, hub.bundler)
-    entry = OnlyCameras(collector, frozenset(rig.names))
+    entry = CameraFilter(collector, frozenset(rig.names))
     hub.join(entry)
     try:
         while observations.share < 1.0:

@@ -18,10 +18,10 @@ from mocapd.trackers.registry import entry, measuring_tracker
 from mocapd.tracking.base import Tracker
 from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Rig
+from mocapd.wizard.camera_filter import CameraFilter
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.newest_body import NewestBody
-from mocapd.wizard.only_cameras import OnlyCameras
 from mocapd.wizard.step import Tell
 
 _BUILDING = 0.8  # share of the preparation before the rehearsal
@@ -89,7 +89,7 @@ class CheckTracking:
         self._loop = PipelineLoop(
             self._collector, prepared.tracker, prepared.shape, smoother, shown.bodies, died
         )
-        self._entry = OnlyCameras(self._collector, frozenset(prepared.rig.names))
+        self._entry = CameraFilter(self._collector, frozenset(prepared.rig.names))
         self._loop.start()
         shown.loop = self._loop
         hub.join(self._entry)

@@ -14,7 +14,7 @@ from mocapd.calibrate.board.board_at_rest import (
     lies_on_its_face,
     looks_like_floor,
 )
-from mocapd.calibrate.board.board_look import Look
+from mocapd.calibrate.board.board_instant import BoardInstant
 from mocapd.calibrate.extrinsics.board_collection import ENOUGH, BoardCollection
 from mocapd.calibrate.extrinsics.board_extrinsics import (
     SceneExtrinsics,
@@ -105,14 +105,14 @@ class ExtrinsicsWithBoard:
         self._begun_ns = now_ns if self._begun_ns is None else self._begun_ns
         if self._stage is BoardPhase.DONE:
             return
-        look = self._watch.look()
-        if look is not None:
-            self._advice.take(look)
+        instant = self._watch.instant()
+        if instant is not None:
+            self._advice.take(instant)
             if self._stage is BoardPhase.COLLECT:
-                self._collection.offer(look)
+                self._collection.offer(instant)
             else:
-                self._watch_floor(look)
-            self._advice.ask(now_ns, look.frames, self._spec)
+                self._watch_floor(instant)
+            self._advice.ask(now_ns, instant.frames, self._spec)
         if (
             self._stage is BoardPhase.COLLECT
             and self._context.job is None
@@ -198,12 +198,12 @@ class ExtrinsicsWithBoard:
         self._rest.forget()
         self._context.scene(Scene.FLOOR)
 
-    def _watch_floor(self, look: Look) -> None:
+    def _watch_floor(self, instant: BoardInstant) -> None:
         still = {
             name: self._collection.still(name, observation)
-            for name, observation in look.observations.items()
+            for name, observation in instant.observations.items()
         }
-        self._rest.take(look, still)
+        self._rest.take(instant, still)
         if self._extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.has_enough:
             return
         views = self._rest.views()

@@ -19,9 +19,9 @@ from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.types import Camera, Floats, Rig
+from mocapd.wizard.camera_filter import CameraFilter
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.only_cameras import OnlyCameras
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Tell
 
@@ -111,7 +111,7 @@ def _follow(
     """Track the hub's frames until there is enough; False when stopped. Raises InputError."""
     names = frozenset(camera.name for camera in tracks.cameras)
     collector = FrameCollector([camera.name for camera in tracks.cameras], hub.bundler)
-    entry = OnlyCameras(collector, names)
+    entry = CameraFilter(collector, names)
     give_up_ns = clock() + nanoseconds(params.patience_s)
     hub.join(entry)
     try:

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.boundary.numbers import brief
-from mocapd.calibrate.board.board_look import Look
+from mocapd.calibrate.board.board_instant import BoardInstant
 from mocapd.calibrate.board.board_sightings import BoardSightings
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.view_picking import PickedViews
@@ -80,9 +80,9 @@ class IntrinsicsStep:
         self._now_ns = now_ns
         if self._done():
             return
-        look = self._watch.look()
-        if look is not None:
-            self._take(look, now_ns)
+        instant = self._watch.instant()
+        if instant is not None:
+            self._take(instant, now_ns)
         if self._context.job is None:
             self._solve_next()
 
@@ -144,10 +144,10 @@ class IntrinsicsStep:
         self._sightings = BoardSightings({camera.id: camera.size_px for camera in cameras}, board_m)
         self._round += 1  # ignores the result of a job of an earlier round
 
-    def _take(self, look: Look, now_ns: int) -> None:
-        self._advice.take(look)
-        together = self._sightings.offer(look)
-        for id_, observation in look.observations.items():
+    def _take(self, instant: BoardInstant, now_ns: int) -> None:
+        self._advice.take(instant)
+        together = self._sightings.offer(instant)
+        for id_, observation in instant.observations.items():
             one = self._cameras[id_]
             view = observation.view
             if one.intrinsics is not None or not one.picked.offer(view, observation.motion_px):
@@ -155,7 +155,7 @@ class IntrinsicsStep:
             if not (together and self._sightings.still(id_, observation)):
                 one.picked.views[-1] = self._sightings.add_alone(id_, view)
         wanted = {
-            id_: frame for id_, frame in look.frames.items() if not self._cameras[id_].intrinsics
+            id_: frame for id_, frame in instant.frames.items() if not self._cameras[id_].intrinsics
         }
         self._advice.ask(now_ns, wanted, self._spec)
 

@@ -14,8 +14,8 @@ _FRAME_NS = 1e9 / 30.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoardObservation:
-    """The board in one picture; `motion_px`: of its corners since the last look [px per 1/30 s], infinite
-    where that look did not show the board."""
+    """The board in one picture; `motion_px`: of its corners since the last instant [px per 1/30 s], infinite
+    where that instant did not show the board."""
 
     view: BoardView
     t_ns: int
@@ -23,7 +23,7 @@ class BoardObservation:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Look:
+class BoardInstant:
     """One instant: cameras that had a picture, and the observations of the board."""
 
     index: int

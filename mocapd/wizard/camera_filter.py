@@ -1,4 +1,4 @@
-"""Filters the frames of some cameras for a collector; others may be open, too."""
+"""Passes the frames of some cameras to a collector, if others are open, too."""
 
 from dataclasses import dataclass
 
@@ -7,8 +7,8 @@ from mocapd.types import Frame
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class OnlyCameras:
-    """Subscribes to a hub in the collector's place."""
+class CameraFilter:
+    """A subscriber of a hub that passes on the frames of `names` only."""
 
     collector: FrameCollector
     names: frozenset[str]

@@ -1,0 +1,1 @@
+"""Parsing of command lines beyond what typer does: groups of options, and removed ones."""
