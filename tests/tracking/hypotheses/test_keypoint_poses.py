@@ -173,3 +173,15 @@ def test_a_leg_that_was_seen_elsewhere_is_tried_there() -> None:
     ((start, changed), *_) = keypoint_starts(FITTER, fit, seen_at(goal_m), (), PARAMS)
     assert changed == ("left_leg",)
     assert np.linalg.norm(FITTER.joints(start)[0][FOOT] - goal_m[FOOT]) < 0.15
+
+
+def test_keypoints_that_see_a_body_face_the_other_way_are_believed_at_the_third_look() -> None:
+    """Its colours were learned from the reversed body, so pictures confirm that one."""
+    here = standing(0.0, 0.1)
+    views = drawn(here)
+    seen = seen_at(FITTER.joints(standing(np.pi, 0.1))[0], np.concatenate([TRUNK, LIMBS]))
+    fit = FITTER.fit(here, views, DT_S, 2, rendered=True, terms=(seen,))
+    at = situation(seen, PoseEvidence(lambda _: drawn(here), lambda _, __: (seen,)))
+    poses = KeypointPoses(KeypointPoseParams())
+    changed = [poses.test(ScoredFit(fit, views, (seen,)), at).changed for _ in range(3)]
+    assert changed == [(), (), ("whole",)]
