@@ -253,6 +253,6 @@ def test_the_commands_say_what_they_do(clean_env: dict[str, str], tmp_path: Path
     assert "yours, left alone" in again.out
     assert "move your changes into a drop-in" in again.err
     gone = mocapd_here(clean_env, "uninstall-service", "--root", root)
-    assert gone.out.count(" removed\n") == 7
+    assert gone.out.count(" removed\n") == 6
     both = mocapd_here(clean_env, "install-service", "--root", root, "--user")
     assert (both.code, both.err.count("\n")) == (2, 1)
