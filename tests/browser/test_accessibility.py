@@ -28,7 +28,7 @@ def violations(page: Page, name: str) -> list[str]:
     for size in SIZES.values():
         page.set_viewport_size(size)
         for scheme in ("light", "dark"):
-            page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+            page.emulate_media(color_scheme=scheme)
             told = Axe().run(page).response
             rules = len(told["passes"]) + len(told["violations"])
             found += [
