@@ -2,6 +2,7 @@
 
 import os
 import pty
+import re
 import signal
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import psutil
 import pytest
 
 from mocapd.child_process import child_command
+from tests.conftest import ROOT
 from tests.outputs.frames import eventually
 from tests.processes import still_runs
 
@@ -54,6 +56,14 @@ def test_a_child_ends_with_the_terminal_of_its_parent() -> None:
     os.close(terminal)
     os.waitpid(parent, 0)
     assert eventually(lambda: not still_runs(child), 5.0)
+
+
+def test_no_program_of_ours_starts_another_one_that_may_outlive_it() -> None:
+    """But for `as-service`, which systemd runs."""
+    starts = re.compile(r"\bsys\.executable, *\"-[cm]|\bsys\.executable, \"-P\"")
+    sources = [*(ROOT / "mocapd").rglob("*.py"), *(ROOT / "clients").rglob("*.py")]
+    found = {path.name for path in sources if starts.search(path.read_text())}
+    assert found == {"child_process.py", "service_user.py"}
 
 
 def test_a_child_that_asks_after_its_parents_end_ends_at_once(tmp_path: Path) -> None:

@@ -3,7 +3,6 @@
 import os
 import re
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable
@@ -18,6 +17,7 @@ from msgspec import Meta
 from mocapd.boundary.files import read_text
 from mocapd.boundary.folders import private_folder
 from mocapd.boundary.parsing import decode_json
+from mocapd.child_process import child_command
 from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError, mend_of
 from mocapd.service.body_recorder import BodyRecorder
 from mocapd.whole_file import whole_file
@@ -151,8 +151,8 @@ class Recordings:
             raise InputError("there is no such format", "recordings", "reload the page")
         with TemporaryDirectory(prefix="mocapd-export-") as folder:
             out = Path(folder) / f"{id_}.{format_}"
-            command = [sys.executable, "-m", "mocapd.cli.main", "export", str(path)]
-            command += ["--to", format_, "--out", str(out)]
+            words = ("export", str(path), "--to", format_, "--out", str(out))
+            command = child_command("from mocapd.cli.main import main; main()", *words)
             # an export has no use for the daemon's configuration
             env = {name: value for name, value in os.environ.items() if name[:7] != "MOCAPD_"}
             try:

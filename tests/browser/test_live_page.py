@@ -46,6 +46,7 @@ def test_figure_and_listeners_read_well(page: Page, host: TinyHost, pictures: Pa
     for name, size in SIZES.items():
         page.set_viewport_size(size)
         page.wait_for_timeout(700 if FOR_THE_DOCS else 100)
+        expect(page.locator("#to-setup")).to_be_in_viewport(ratio=1)
         if FOR_THE_DOCS:
             page.screenshot(path=pictures / f"live-{name}.png")
 
@@ -103,7 +104,7 @@ def test_record_and_stop_and_what_was_recorded(page: Page, host: TinyHost, pictu
     page.screenshot(path=pictures / "live-recordings.png")
 
 
-def test_recenter_mirror_and_full_screen(page: Page, host: TinyHost) -> None:
+def test_recenter_mirror_and_full_screen(page: Page, host: TinyHost, pictures: Path) -> None:
     show_pictures(host)
     page.click("#recenter")
     page.wait_for_timeout(300)
@@ -115,6 +116,14 @@ def test_recenter_mirror_and_full_screen(page: Page, host: TinyHost) -> None:
     page.click("#full-screen")
     page.wait_for_timeout(500)
     assert page.evaluate("document.fullscreenElement?.className") == "stage"
+    show_pictures(host)
+    figure = page.locator(".figure-3d canvas").bounding_box()
+    assert figure is not None
+    assert figure["height"] > 600, "it fills the screen's 657 px"
+    for shown in page.locator("#live camera-picture").all():
+        expect(shown).to_be_in_viewport(ratio=1)
+    page.wait_for_timeout(400 if FOR_THE_DOCS else 50)
+    page.screenshot(path=pictures / "live-full-screen.png")
     page.keyboard.press("Escape")
 
 

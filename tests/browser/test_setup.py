@@ -150,6 +150,9 @@ def setup(served: Served, page: Page, pictures: Path, cache_home: Path) -> Setup
     def shoot(name: str) -> None:
         if not FOR_THE_DOCS:  # a browser without a graphics card takes a second for each
             return
+        # else what stays in sight lies over the middle of the picture
+        page.evaluate("scrollTo(0, 0)")
+        page.wait_for_timeout(300)
         page.screenshot(path=pictures / f"setup_{name}.jpg", full_page=True, quality=80)
 
     def finished(step: str) -> None:

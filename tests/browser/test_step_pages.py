@@ -1,5 +1,6 @@
 """Every step's page at a desk and on a phone, its sound, and the last page; in a real browser, without cameras."""
 
+import dataclasses
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -144,6 +145,9 @@ def test_it_is_said_aloud_what_to_do_until_it_is_switched_off(shown: Shown) -> N
     shown.page.wait_for_timeout(1300)
     shown.wizard.show(StepName.LENS, lens(8))
     shown.wait_for("Next.")
+    shown.page.wait_for_timeout(1300)
+    shown.show(StepName.LENS, dataclasses.replace(lens(8), sentence="Hold still."))
+    shown.wait_for("Hold still.")
     for phase in ("leaving", "seeking", "judged"):
         shown.page.wait_for_timeout(1300)
         shown.show(StepName.CHECK, check(phase))

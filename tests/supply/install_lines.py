@@ -1,7 +1,7 @@
 """The commands that our pages print to install something, and a container in which each runs.
 
 `python -m tests.supply.install_lines` runs every block in a copy of the checkout, with a home, a path and a folder for
-temporary files of its own, and prints what each took; it asks the package index.
+temporary files of its own, and prints what each took, in time and on the disk; it asks the package index.
 """
 
 import os
@@ -63,8 +63,18 @@ def installing(text: str) -> str:
     return "\n".join(wanted)
 
 
-def run(page: str, text: str) -> tuple[int, float, str]:
-    """Exit code, seconds and the end of what it said."""
+@dataclass(frozen=True, slots=True)
+class Installed:
+    """code: exit code; size_mb: of all that is there afterwards and was not in the checkout; said: the end of it."""
+
+    code: int
+    took_s: float
+    size_mb: float
+    said: str
+
+
+def run(text: str) -> Installed:
+    """Run the installing lines of a block."""
     with tempfile.TemporaryDirectory(prefix="mocapd-install-") as folder:
         home, checkout = Path(folder) / "home", Path(folder) / "checkout"
         home.mkdir()
@@ -80,12 +90,21 @@ def run(page: str, text: str) -> tuple[int, float, str]:
             "PATH": "/usr/local/bin:/usr/bin:/bin",
             "LANG": "C.UTF-8",
         }
+        checkout_mb = size_mb(Path(folder))
         began_s = time.monotonic()
         done = subprocess.run(
             ["bash", "-eu", "-c", installing(text)], cwd=checkout, env=env, capture_output=True, text=True,
             timeout=_TIMEOUT_S, check=False,
         )  # fmt: skip
-        return done.returncode, time.monotonic() - began_s, (done.stdout + done.stderr)[-600:]
+        took_s = time.monotonic() - began_s
+        said = (done.stdout + done.stderr)[-600:]
+        return Installed(done.returncode, took_s, size_mb(Path(folder)) - checkout_mb, said)
+
+
+def size_mb(folder: Path) -> float:
+    """Of all files, without what installers keep for another time."""
+    files = (path for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
+    return sum(path.stat().st_size for path in files if ".cache" not in path.parts) / 1e6
 
 
 def main(wanted: list[str]) -> int:
@@ -94,11 +113,14 @@ def main(wanted: list[str]) -> int:
     for page, text in blocks():
         if "sudo" in text or (wanted and not any(word in page for word in wanted)):
             continue
-        code, took_s, said = run(page, text)
-        failed += code != 0
-        print(f"{page}: exit code {code} after {took_s:.0f} s", flush=True)
-        if code:
-            print(said, flush=True)
+        made = run(text)
+        failed += made.code != 0
+        print(
+            f"{page}: exit code {made.code} after {made.took_s:.0f} s, {made.size_mb:.0f} MB",
+            flush=True,
+        )
+        if made.code:
+            print(made.said, flush=True)
     return min(failed, 1)
 
 

@@ -108,8 +108,8 @@ def test_the_units_start_what_is_in_the_package(unpacked: Path) -> None:
 
 def test_everything_around_the_program_is_placed(unpacked: Path) -> None:
     for path in (
-        *("usr/lib/sysusers.d/mocapd.conf", "usr/lib/udev/rules.d/70-mocapd-webcams.rules"),
-        *("usr/share/man/man1/mocapd.1.gz", "usr/share/bash-completion/completions/mocapd"),
+        *("usr/lib/sysusers.d/mocapd.conf", "usr/share/man/man1/mocapd.1.gz"),
+        "usr/share/bash-completion/completions/mocapd",
         *("usr/share/doc/mocapd/setup.md", "usr/share/doc/mocapd/images/setup_room.jpg"),
         *("usr/share/doc/mocapd/copyright", "usr/share/doc/mocapd/examples/network.conf.example"),
     ):
@@ -163,7 +163,7 @@ def test_an_update_after_which_the_service_does_not_start_is_installed_and_told(
     """As where a key of the configuration is gone: else every later call of apt would fail."""
     tools = tmp_path / "bin"
     tools.mkdir()
-    for tool in ("systemd-sysusers", "udevadm", "systemctl"):
+    for tool in ("systemd-sysusers", "systemctl"):
         fails = tool == "systemctl" and not restarts
         (tools / tool).write_text(f'#!/bin/sh\n[ "$1" != try-restart ] || exit {int(fails)}\n')
         (tools / tool).chmod(0o755)

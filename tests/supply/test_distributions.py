@@ -84,7 +84,10 @@ def test_installed_it_is_found_where_it_was_installed(
     [
         (("check-config", "--set", "tracker.stature_m=1.75"), "stature_m"),
         (("install-service", "--user", "--dry-run"), "mocapd.service"),
-        (("install-service", "--root", "{}", "--python", "/usr/lib/mocapd/bin/python"), "rules.d"),
+        (
+            ("install-service", "--root", "{}", "--python", "/usr/lib/mocapd/bin/python"),
+            "sysusers.d",
+        ),
         (("man",), "mocapd"),
         (("shirt", "--out", "{}/shirt.pdf"), ""),
     ],

@@ -6,6 +6,7 @@ import pytest
 
 from mocapd.web.app import MEDIA_TYPES, PAGE_DIR
 from mocapd.web.server import WebServer
+from tests.conftest import ROOT
 from tests.web.browser import get, token_of
 
 FILES = sorted(path for path in PAGE_DIR.iterdir() if path.is_file())
@@ -26,6 +27,15 @@ def test_no_file_needs_what_the_policy_forbids(path) -> None:  # type: ignore[no
         assert re.findall(r"<script(?![^>]*\ssrc=)|<style|\sstyle=|\son\w+=", text) == []
     if path.suffix == ".js":
         assert re.findall(r"\beval\(|new Function\(|setAttribute\(\s*[\"']style", text) == []
+
+
+def test_how_exact_the_pose_is_is_the_same_figure_wherever_it_is_said() -> None:
+    readme = (ROOT / "README.md").read_text()
+    for way in ("In a shirt", "In any clothes"):
+        found = re.search(rf"\*\*{way}.*?([\d.]+ to [\d.]+ cm)", readme, re.DOTALL)
+        assert found
+        for path in (PAGE_DIR / "setup.js", ROOT / "docs/setup.md"):
+            assert found.group(1) in path.read_text(), path.name
 
 
 def test_every_file_that_is_named_is_there() -> None:

@@ -93,8 +93,6 @@ def next_steps(target: InstallTarget, done: list[InstallStep]) -> list[str]:
             "journalctl --user -u mocapd -f         # what it says",
         ]
     steps = ["systemd-sysusers"] if ".conf" in changed else []
-    if ".rules" in changed:
-        steps.append("udevadm control --reload && udevadm trigger --subsystem-match=usb")
     steps += ["systemctl daemon-reload"] if ".service" in changed else []
     made = [step.path for step in done if step.is_admins and step.outcome is Outcome.MADE]
     if gid_of(SERVICE_GROUPS[0]) is None:  # systemd-sysusers makes it

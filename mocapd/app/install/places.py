@@ -9,7 +9,6 @@ from mocapd.app.install.own_file import with_marker
 from mocapd.app.install.unit_texts import (
     CONFIG,
     EXAMPLE,
-    RULES,
     SYSUSERS,
     UNITS,
     USER_UNIT,
@@ -32,13 +31,12 @@ class PlacedFile:
 @dataclass(frozen=True, slots=True)
 class InstallPaths:
     """Folders; None for files that are not installed. `units`, `user_units`: of systemd, `examples`: drop-ins that
-    nothing reads, `rules`: of udev, `config`: of mocapd."""
+    nothing reads, `config`: of mocapd."""
 
     units: Path | None
     user_units: Path | None
     examples: Path | None = None
     sysusers: Path | None = None
-    rules: Path | None = None
     config: Path | None = None
 
 
@@ -50,7 +48,6 @@ def of_machine() -> InstallPaths:
         user_units=None,
         examples=units / f"{UNIT}.d",
         sysusers=Path("/etc/sysusers.d"),
-        rules=Path("/etc/udev/rules.d"),
         config=Path("/etc/mocapd"),
     )
 
@@ -70,7 +67,6 @@ def of_package(root: Path) -> InstallPaths:
         user_units=lib / "systemd/user",
         examples=root / "usr/share/doc/mocapd/examples",
         sysusers=lib / "sysusers.d",
-        rules=lib / "udev/rules.d",
         config=root / "etc/mocapd",
     )
 
@@ -93,8 +89,5 @@ def files(places: InstallPaths, python: Path) -> Iterator[PlacedFile]:
     if places.sysusers is not None:
         text = with_marker(text_of(SYSUSERS), "a file of your own in the same folder")
         yield PlacedFile(places.sysusers / "mocapd.conf", text)
-    if places.rules is not None:
-        text = with_marker(text_of(RULES), "a file of your own after it")
-        yield PlacedFile(places.rules / "70-mocapd-webcams.rules", text)
     if places.config is not None:
         yield PlacedFile(places.config / CONFIG, text_of(CONFIG), is_admins=True)

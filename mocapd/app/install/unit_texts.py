@@ -14,7 +14,6 @@ UNITS = (
 USER_UNIT = "mocapd-user.service"
 EXAMPLE = "network.conf"
 SYSUSERS = "mocapd.sysusers"
-RULES = "mocapd.rules"
 CONFIG = "config.toml"
 
 _COMMAND, _SANDBOX = "@COMMAND@", "@SANDBOX@\n"

@@ -41,7 +41,7 @@ def install_service(
         ),
     ] = None,
 ) -> None:
-    """Have systemd run mocapd: put its units, its user and the rule for webcams in place.
+    """Have systemd run mocapd: put its units and its user in place.
 
     Says what was done and what to run next; starts nothing by itself. Files that you have changed stay as they are,
     and so does your configuration.

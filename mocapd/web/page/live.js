@@ -77,7 +77,10 @@ export class Live {
       ...this.recordings.buttons,
       button("recenter", "Recenter", () => this.recenter(), { id: "recenter", title: "What you face now is forward" }),
       this.mirrored,
-      button("full-screen", "Full screen", () => fullScreen(stage), { id: "full-screen" }),
+      button("full-screen", "Full screen", () => fullScreen(stage), {
+        id: "full-screen",
+        hidden: !document.fullscreenEnabled, // some phones show videos alone that way
+      }),
     );
     this.socket = new Socket(
       "live",
@@ -135,6 +138,9 @@ export class Live {
     this.figure.setScene(scene);
     const shown = [...this.pictures.querySelectorAll("camera-picture")];
     if (shown.map((one) => one.getAttribute("camera")).join("\n") === scene.names.join("\n")) return;
+    const columns = scene.names.length > 3 ? 2 : 1; // of the full screen
+    this.pictures.style.setProperty("--columns", columns);
+    this.pictures.style.setProperty("--rows", Math.ceil(scene.names.length / columns));
     this.pictures.replaceChildren();
     for (const name of scene.names) {
       const figure = make(this.pictures, "figure", "camera");

@@ -1,9 +1,11 @@
 """The demo: simulated cameras and shooter follow one script."""
 
 import os
+import pty
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import psutil
@@ -73,25 +75,54 @@ def test_what_the_daemon_prepares_is_said_with_time_and_share(
     assert "pose database: 34 %" in capsys.readouterr().err  # the terminal has it, too
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
-def test_the_real_daemon_and_what_it_started_end_with_the_game(
-    tmp_path: Path, number: signal.Signals
-) -> None:
-    """In its first start, with processes that compile and render."""
+def _begun(line: str) -> list[int]:
+    """The daemon whose number the player printed, and what it has started."""
+    daemon = psutil.Process(int(line))
+    assert eventually(lambda: bool(daemon.children(recursive=True)))
+    return [daemon.pid, *(child.pid for child in daemon.children(recursive=True))]
+
+
+def _all_end(begun: list[int], how: str) -> bool:
+    """Within 5 s; prints when (`pytest -s`)."""
+    ended_s = time.monotonic()
+    end = eventually(lambda: not any(map(still_runs, begun)), 5.0)
+    left = sum(map(still_runs, begun))
+    print(f"{how}: {left} of {len(begun)} left after {time.monotonic() - ended_s:.1f} s")
+    return end
+
+
+@pytest.fixture
+def first_start(tmp_path: Path) -> tuple[list[str], dict[str, str]]:
+    """The command and the environment of a player whose daemon compiles and renders."""
     env = {name: value for name, value in os.environ.items() if not name.startswith("MOCAPD_")}
     env |= {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
+    return [sys.executable, "-c", _PLAYER, str(tmp_path)], env
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+def test_the_real_daemon_and_what_it_started_end_with_the_game(
+    first_start: tuple[list[str], dict[str, str]], number: signal.Signals
+) -> None:
+    command, env = first_start
     with subprocess.Popen(
-        [sys.executable, "-c", _PLAYER, str(tmp_path)],
-        env=env,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    ) as player:
+        command, env=env, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as player:  # fmt: skip
         assert player.stdout is not None
-        daemon = psutil.Process(int(player.stdout.readline()))
-        assert eventually(lambda: bool(daemon.children(recursive=True)))
-        begun = [daemon.pid, *(child.pid for child in daemon.children(recursive=True))]
+        begun = _begun(player.stdout.readline())
         player.send_signal(number)
         player.wait()
-        assert eventually(lambda: not any(map(still_runs, begun)), 5.0)
+        assert _all_end(begun, number.name)
+
+
+def test_they_end_with_the_terminal_of_the_game(
+    first_start: tuple[list[str], dict[str, str]],
+) -> None:
+    command, env = first_start
+    player, terminal = pty.fork()
+    if player == 0:
+        os.execve(command[0], command, env)
+    with open(terminal, encoding="utf-8", errors="replace", closefd=False) as said:
+        begun = _begun(next(line for line in said if line.strip().isdecimal()))
+    os.close(terminal)
+    os.waitpid(player, 0)
+    assert _all_end(begun, "closed terminal")

@@ -1,6 +1,7 @@
 """The picture, drawn off-screen by Panda3D's own renderer; without Panda3D only where nobody requires it."""
 
 import importlib.util
+import json
 import os
 import subprocess
 import sys
@@ -19,8 +20,8 @@ pytestmark = pytest.mark.skipif(
 
 
 @pytest.fixture(scope="module")
-def drawn(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Bytes]:
-    """Pictures by name, BGR."""
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What `drawn.py` writes."""
     folder = tmp_path_factory.mktemp("drawn")
     environment = dict(os.environ) | {"PYTHONPATH": ":".join(p for p in sys.path if p)}
     done = subprocess.run(
@@ -32,6 +33,12 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Bytes]:
         cwd=Path(__file__).parents[3],
     )
     assert done.returncode == 0, done.stderr[-2000:]
+    return folder
+
+
+@pytest.fixture(scope="module")
+def drawn(folder: Path) -> dict[str, Bytes]:
+    """Pictures by name, BGR."""
     return {path.stem: np.asarray(cv2.imread(str(path))) for path in folder.glob("*.png")}
 
 
@@ -76,3 +83,14 @@ def test_in_first_person_ones_own_head_is_not_in_the_way(drawn: dict[str, Bytes]
     assert (
         (grass[..., 1] > grass[..., 0] + 15) & (grass[..., 1] > grass[..., 2] + 15)
     ).mean() > 0.3
+
+
+def test_texts_fit_into_a_window_of_any_shape_and_do_not_lie_on_each_other(folder: Path) -> None:
+    for shape, texts in json.loads((folder / "texts.json").read_text()).items():
+        assert {"score", "clock", "keys", "foot", "message", "popup", "table"} <= set(texts)
+        for name, (left, right, lower, upper) in texts.items():
+            assert -1.0 <= left < right <= 1.0, (shape, name)
+            assert -1.0 <= lower < upper <= 1.0, (shape, name)
+        assert texts["keys"][1] < texts["foot"][0], shape
+        assert texts["score"][1] < texts["clock"][0], shape
+        assert texts["clock"][1] < texts["streak"][0], shape

@@ -33,7 +33,7 @@ def parse_options(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--name", default="", help="yours, for the high scores")
     seen = parser.add_argument_group("picture and sound")
     seen.add_argument("--view", choices=("behind", "first"), default="behind")
-    seen.add_argument("--size", type=_size, default=_SIZE, metavar="WxH", help="[1280x720]")
+    seen.add_argument("--size", type=window_size, default=_SIZE, metavar="WxH", help="[1280x720]")
     seen.add_argument("--fullscreen", action="store_true")
     seen.add_argument(
         "--renderer", choices=("auto", "gl", "software"), default="auto",
@@ -60,7 +60,8 @@ def _whole(low: int, high: int) -> Callable[[str], int]:
     return read
 
 
-def _size(text: str) -> tuple[int, int]:
+def window_size(text: str) -> tuple[int, int]:
+    """Of a text like 1280x720 [px]."""
     width, _, height = text.partition("x")
     if not (width.isdecimal() and height.isdecimal()):
         raise argparse.ArgumentTypeError(f"{text!r} is not like 1280x720")

@@ -13,6 +13,7 @@ from panda3d.core import Filename
 from goalkeeper.app.fixed_steps import FixedSteps
 from goalkeeper.app.high_scores import HighScore, with_round
 from goalkeeper.app.hud_text import PlayerSettings, Popups, hud_text
+from goalkeeper.app.options import window_size
 from goalkeeper.core.events import Event, Saved
 from goalkeeper.core.match import Match, MatchRules, Phase
 from goalkeeper.core.pitch import TICK_S
@@ -96,10 +97,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser = ArgumentParser("screenshots", description="draws the README's pictures")
     parser.add_argument("folder", type=Path)
     parser.add_argument("--renderer", choices=("gl", "software"), default="software")
+    parser.add_argument("--size", type=window_size, default=(960, 540), metavar="WxH")
     options = parser.parse_args(arguments)
     try:
         stage = open_stage(
-            StageParams((960, 540), Renderer(options.renderer), offscreen=True, sound=False)
+            StageParams(options.size, Renderer(options.renderer), offscreen=True, sound=False)
         )
         options.folder.mkdir(parents=True, exist_ok=True)
         session = _Session(stage, options.folder)

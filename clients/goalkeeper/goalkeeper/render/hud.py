@@ -1,5 +1,5 @@
-"""What is written over the picture: score, clock, streak, level, keys, latency, messages. Text is laid out anew only when it
-changes: that costs more than drawing it. All of it lies on dark panels, and follows the window's shape."""
+"""What is written over the picture: score, clock, streak, level, keys, latency, messages, on dark panels. Text is laid out
+anew only when it changes: that costs more than drawing it. What is wider than the window is drawn smaller."""
 
 from typing import Any
 
@@ -11,38 +11,49 @@ _INK = (0.96, 0.97, 0.98, 1.0)
 _AMBER = (1.0, 0.72, 0.22, 1.0)
 _PANEL = (0.02, 0.03, 0.06, 0.72)
 _BAR_HEIGHT = 0.085  # of the keys, at the bottom
+_EDGE = 0.04  # left free at each side
+_TOP_WIDTH = 1.32  # of the panel with the score, and its edges
 _FONT = "cmss12"  # of Panda3D; a zero of its built-in font is a letter O
 
 
 class Hud:
-    """On Panda3D's two-dimensional scene, whose height is -1..1."""
+    """Two-dimensional: height -1..1, width -aspect..aspect."""
 
     def __init__(self, base: Any) -> None:
         self._font = base.loader.loadFont(_FONT)
         self._base, self._aspect = base, 0.0
-        self._root = base.aspect2d.attachNewNode("hud")
-        _panel(self._root, (-0.62, 0.62, 0.835, 0.985))
-        self._bar_back = _panel(self._root, (-0.25, 0.25, 0.805, 0.822))
-        self._bar = _panel(self._root, (0.0, 0.5, 0.805, 0.822), _AMBER)
+        # aspect2d scales itself another way in a window that is resized to a portrait
+        self._root = base.render2d.attachNewNode("hud")
+        self._top = self._root.attachNewNode("top")
+        _panel(self._top, (-0.62, 0.62, 0.835, 0.985))
+        _panel(self._top, (-0.25, 0.25, 0.805, 0.822))
+        self._bar = _panel(self._top, (0.0, 0.5, 0.805, 0.822), _AMBER)
         self._bar.setX(-0.25)
         self._foot_bar = _panel(self._root, (-1.0, 1.0, -1.0, -1.0 + _BAR_HEIGHT))
-        self._score = self._line((-0.57, 0.875), 0.085, TextNode.ALeft, _INK)
-        self._clock = self._line((0.0, 0.872), 0.095, TextNode.ACenter, _INK)
-        self._streak = self._line((0.57, 0.875), 0.085, TextNode.ARight, _AMBER)
-        self._foot = self._line((0.0, -0.972), 0.052, TextNode.ARight, _INK)
-        self._keys = self._line((0.0, -0.972), 0.052, TextNode.ALeft, _INK)
-        self._big = self._line((0.0, 0.10), 0.42, TextNode.ACenter, _INK)
-        self._message = self._line((0.0, 0.62), 0.075, TextNode.ACenter, _INK, backed=True)
-        self._popup = self._line((-0.85, 0.36), 0.12, TextNode.ACenter, _AMBER, backed=True)
-        self._table = self._line((0.0, 0.52), 0.072, TextNode.ACenter, _INK, backed=True)
+        top, root, centre = self._top, self._root, TextNode.ACenter
+        self._score = self._line("score", top, (-0.57, 0.875), 0.085, TextNode.ALeft, _INK)
+        self._clock = self._line("clock", top, (0.0, 0.872), 0.095, centre, _INK)
+        self._streak = self._line("streak", top, (0.57, 0.875), 0.085, TextNode.ARight, _AMBER)
+        self._foot = self._line("foot", root, (0.0, -0.972), 0.052, TextNode.ARight, _INK)
+        self._keys = self._line("keys", root, (0.0, -0.972), 0.052, TextNode.ALeft, _INK)
+        self._big = self._line("big", root, (0.0, 0.10), 0.42, centre, _INK)
+        self._message = self._line("message", root, (0.0, 0.62), 0.075, centre, _INK, backed=True)
+        self._popup = self._line(
+            "popup", root, (0.0, 0.36), 0.12, TextNode.ALeft, _AMBER, backed=True
+        )
+        self._table = self._line("table", root, (0.0, 0.52), 0.072, centre, _INK, backed=True)
 
     def show(self, text: HudText) -> None:
         """Once a picture."""
         aspect = self._base.getAspectRatio()
         if aspect != self._aspect:  # the window has another shape
             self._aspect = aspect
-            self._foot.move(aspect - 0.04)
-            self._keys.move(0.04 - aspect)
+            self._root.setScale(1.0 / aspect, 1.0, 1.0)
+            scale = min(1.0, 2.0 * aspect / _TOP_WIDTH)
+            self._top.setScale(scale)
+            self._top.setZ(1.0 - scale)
+            self._foot.move(aspect - _EDGE)
+            self._keys.move(_EDGE - aspect)
             self._foot_bar.setSx(aspect)
         self._score.write(text.score)
         self._clock.write(text.clock)
@@ -54,9 +65,26 @@ class Hud:
         self._popup.write(text.popup)
         self._table.write(text.table)
         self._bar.setSx(max(text.level, 0.001))
+        self._fit()
+
+    def _fit(self) -> None:
+        """Makes texts smaller that would not fit into the window; the bar at the bottom has two."""
+        width = 2.0 * (self._aspect - _EDGE)
+        bottom = self._keys.width + self._foot.width + 2.0 * _EDGE
+        for line in (self._keys, self._foot):
+            line.scale(min(1.0, width / bottom))
+        for line in (self._big, self._message, self._table):
+            line.scale(min(1.0, (width - 2.0 * _EDGE) / max(line.width, 1e-6)))
+        share = min(1.0, 0.6 * width / max(self._popup.width, 1e-6))
+        self._popup.scale(share)
+        self._popup.move(
+            max(_EDGE - self._aspect + 2.0 * _EDGE, -0.85 - 0.5 * share * self._popup.width)
+        )
 
     def _line(
         self,
+        name: str,
+        root: NodePath,
         at: tuple[float, float],
         size: float,
         align: object,
@@ -64,7 +92,7 @@ class Hud:
         *,
         backed: bool = False,
     ) -> "_Line":
-        line = _Line(self._root, at, size, align, colour)
+        line = _Line(name, root, at, size, align, colour)
         line.node.setFont(self._font)
         if backed:
             line.node.setCardColor(*_PANEL)
@@ -78,18 +106,20 @@ class _Line:
 
     def __init__(
         self,
+        name: str,
         root: NodePath,
         at: tuple[float, float],
         size: float,
         align: object,
         colour: tuple[float, ...],
     ) -> None:
-        self.node = TextNode("line")
+        self.node = TextNode(name)
         self.node.setAlign(align)
         self.node.setTextColor(*colour)
         self.node.setShadow(0.05, 0.05)
         self.node.setShadowColor(0.0, 0.0, 0.0, 0.85)
         self._path = root.attachNewNode(self.node)
+        self._size, self._share = size, 1.0
         self._path.setScale(size)
         self._path.setPos(at[0], 0.0, at[1])
         self._path.setTransparency(TransparencyAttrib.MAlpha)
@@ -100,6 +130,17 @@ class _Line:
         if text != self._text:
             self._text = text
             self.node.setText(text)
+
+    @property
+    def width(self) -> float:
+        """At its usual size."""
+        return float(self._size * self.node.getWidth())
+
+    def scale(self, share: float) -> None:
+        """Of its usual size."""
+        if share != self._share:
+            self._share = share
+            self._path.setScale(share * self._size)
 
     def move(self, x: float) -> None:
         self._path.setX(x)
