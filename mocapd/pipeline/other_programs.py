@@ -1,4 +1,4 @@
-"""Measures the share of the machine's processors that other programs use."""
+"""Measures the share of the machine's processors that is in use, and the share that other programs use."""
 
 import math
 import time
@@ -20,13 +20,15 @@ def _read_s() -> tuple[float, float, float]:
 
 
 class OtherPrograms:
-    """Measured over a second or more. Call `share` at any rate, from one thread."""
+    """Measured over a second or more. Call `share` at any rate, from one thread.
+
+    busy: share 0..1 of all processors that all programs used when `share` was last measured; NaN before."""
 
     def __init__(self, read_s: Callable[[], tuple[float, float, float]] = _read_s) -> None:
         self._read_s = read_s
         self._before: tuple[float, float, float] | None = None
         self._at_ns = 0
-        self._share = math.nan
+        self._share = self.busy = math.nan
 
     def share(self, now_ns: int) -> float:
         """The recent share 0..1 of all processors; NaN within the first second."""
@@ -37,4 +39,5 @@ class OtherPrograms:
             total_s, busy_s, own_s = (b - a for a, b in zip(before, self._before, strict=True))
             if total_s > 0.0:
                 self._share = min(1.0, max(0.0, (busy_s - own_s) / total_s))
+                self.busy = min(1.0, max(0.0, busy_s / total_s))
         return self._share

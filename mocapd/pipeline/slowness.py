@@ -7,18 +7,26 @@ from itertools import pairwise
 
 from mocapd.clock import nanoseconds, seconds
 
+OTHERS_SHARE = 0.25  # of the processors, from which other programs count as the cause
+_LESS = "lower fps_hz of the cameras, take smaller pictures or fewer cameras"
+
+
+def remedy(others: float) -> str:
+    """Of a machine that is too slow, for display. others: see Slowness."""
+    if others >= OTHERS_SHARE:
+        return f"close other programs, or {_LESS}"
+    return f"{_LESS}, or use a faster machine"
+
 
 @dataclass(frozen=True, slots=True)
 class SlownessParams:
     """window_s: averaging window; fewest: tracked frame sets needed for a verdict, if need be from before the window;
-    begin, end: share of skipped frame sets at which the verdict begins and ends (hysteresis); others: other programs'
-    share of the processors from which they count as the cause."""
+    begin, end: share of skipped frame sets at which the verdict begins and ends (hysteresis)."""
 
     window_s: float = 6.0
     fewest: int = 4
     begin: float = 0.34
     end: float = 0.2
-    others: float = 0.25
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +39,6 @@ class Slowness:
     made_hz: float
     busy_ms: float
     others: float = math.nan
-    params: SlownessParams = SlownessParams()
 
     @property
     def what(self) -> str:
@@ -40,17 +47,14 @@ class Slowness:
             f"too slow: {100.0 * self.skipped:.0f} % of the frame sets are skipped "
             f"({self.tracked_hz:.1f} of {self.made_hz:.0f} a second are tracked)"
         )
-        if self.others >= self.params.others:
+        if self.others >= OTHERS_SHARE:
             return f"{verdict}, other programs use {100.0 * self.others:.0f} % of this machine"
         return f"{verdict}, a frame set takes {self.busy_ms:.0f} ms"
 
     @property
     def fix(self) -> str:
         """The remedy, for display."""
-        less = "lower fps_hz of the cameras, take smaller pictures or fewer cameras"
-        if self.others >= self.params.others:
-            return f"close other programs, or {less}"
-        return f"{less}, or use a faster machine"
+        return remedy(self.others)
 
 
 class SlownessWatch:
@@ -79,4 +83,4 @@ class SlownessWatch:
             return None
         span_s = max(seconds(now_ns - sets[0][0]), 1e-3)
         busy_ms = sorted(busy for _, _, busy in sets)[len(sets) // 2] / 1e6
-        return Slowness(skipped, len(gaps) / span_s, sum(gaps) / span_s, busy_ms, others, p)
+        return Slowness(skipped, len(gaps) / span_s, sum(gaps) / span_s, busy_ms, others)

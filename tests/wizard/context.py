@@ -34,6 +34,7 @@ class FakeContext:
         self.cache_dir.mkdir(parents=True, exist_ok=True)
         self.scenes: list[Scene] = []
         self.lost: dict[str, str] = {}  # the reason by camera, of those that have stopped
+        self.rates_hz: dict[str, float] = {}  # of cameras that do not deliver 30
         self.times_saved = 0
         self.now_ns = BEGIN_NS
         self.told: list[tuple[str, float]] = []
@@ -53,7 +54,7 @@ class FakeContext:
                 self._seq,
                 0,
                 0,
-                30.0,
+                self.rates_hz.get(name, 30.0),
                 self.now_ns,
             )
             for name in self.hub.names

@@ -11,6 +11,8 @@ from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
 from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.errors import InputError
+from mocapd.pipeline.other_programs import OtherPrograms
+from mocapd.types import Frame
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.cameras_step import CamerasStep
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -35,11 +37,23 @@ class Bench:
         self.context = FakeContext(folder, Draft(cameras=self.cameras))
         self.locks = CameraLocks(webcams)
         self.nodes = nodes
+        self.busy, self.others = 0.1, 0.0  # shares of the processors
+        self._read_s = (0.0, 0.0, 0.0)
         self.enter()
 
     def enter(self) -> None:
-        self.step = CamerasStep(self.context, self.cameras, lambda: self.nodes, self.locks)
+        load = OtherPrograms(self._load)
+        self.step = CamerasStep(self.context, self.cameras, lambda: self.nodes, self.locks, load)
         self.step.enter()
+
+    def _load(self) -> tuple[float, float, float]:
+        total_s, busy_s, own_s = self._read_s
+        self._read_s = (
+            total_s + 2.0,
+            busy_s + 2.0 * self.busy,
+            own_s + 2.0 * (self.busy - self.others),
+        )
+        return self._read_s
 
     def run(self, seconds: float) -> StepView:
         for _ in range(round(seconds * 30)):
@@ -238,6 +252,22 @@ def test_a_camera_gets_a_name(tmp_path: Path) -> None:
         do(bench.step, "name", {"camera": "nobody", "name": "x"})
 
 
+def few_pictures(bench: Bench, lost: bool) -> str:
+    """What is said after some seconds in which six pictures a second come. lost: the camera counted thirty."""
+    (name,) = bench.webcams
+    bench.context.rates_hz[name] = 6.0
+    for index in range(150):
+        if index % 5 == 0:
+            pixels = bench.webcams[name].picture(bench.context.now_ns)
+            seq = index if lost else index // 5
+            bench.context.hub.put(Frame(name, seq, bench.context.now_ns, pixels))
+        bench.step.tick(bench.context.now_ns)
+        bench.context.run_job(bench.step)
+        bench.context.now_ns += FRAME_NS
+    (problem,) = bench.step.view().problems
+    return f"{problem.what} -- {problem.fix}"
+
+
 def yuyv_node(number: int) -> CameraInfo:
     identity = WebcamIdentity(f"1-{number + 1}", "046d", "0825", f"S{number}")
     formats = tuple(PixelFormat("YUYV", size, (30.0, 15.0)) for size in ((640, 480), (320, 240)))
@@ -264,6 +294,44 @@ def test_two_uncompressed_cameras_on_one_bus_are_offered_a_lower_mode(tmp_path: 
     bench.context.lost.clear()
     bench.until_done()
     assert bench.context.draft.cameras[1].size_px == (320, 240)
+
+
+def test_few_pictures_are_blamed_on_usb_only_where_a_webcam_loses_them(tmp_path: Path) -> None:
+    bench = Bench(tmp_path, FakeWebcam("cam"))
+    bench.until_done()
+    assert "USB" in few_pictures(bench, lost=True)
+    assert "more light" in few_pictures(bench, lost=False), "it takes no more than that"
+    bench.busy, bench.others = 1.0, 0.6
+    for lost in (True, False):
+        text = few_pictures(bench, lost)
+        assert "this machine is too slow, other programs use 60 % of it" in text
+        assert "close other programs" in text
+        assert "USB" not in text
+    bench.others = 0.1
+    assert "its processors are 100 % busy" in few_pictures(bench, lost=True)
+    bench.busy = 0.2
+    assert "USB" in few_pictures(bench, lost=True), "the machine is free again"
+
+
+@pytest.mark.parametrize(
+    ("source", "says"),
+    [
+        ("sim:first_setup#cam0", "this machine is too slow"),
+        ("rtsp://10.0.0.7/live", "network"),
+        ("/dev/video0", "driver"),
+    ],
+)
+def test_usb_is_not_blamed_for_cameras_that_are_not_on_usb(
+    tmp_path: Path, source: str, says: str
+) -> None:
+    bench = Bench(tmp_path, FakeWebcam("cam"))
+    bench.cameras = (replace(bench.cameras[0], source=source),)
+    bench.context.draft = Draft(cameras=bench.cameras)
+    bench.enter()
+    bench.until_done()
+    text = few_pictures(bench, lost=True)
+    assert says in text
+    assert "USB" not in text
 
 
 def test_a_bus_on_which_all_run_well_is_not_complained_of(tmp_path: Path) -> None:

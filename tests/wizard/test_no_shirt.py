@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.verification.check_measure import MeasuringTracker
-from mocapd.calibrate.verification.check_verdict import Delivery, camera_verdict
+from mocapd.calibrate.verification.check_verdict import camera_verdict
+from mocapd.calibrate.verification.delivery import Delivery
 from mocapd.calibration.calibration_file import calibration_path, from_saved, read_calibration
 from mocapd.calibration.calibration_record import Calibration, Wearer
+from mocapd.capture.camera_link import CameraLink
 from mocapd.errors import ConfigError, InputError
 from mocapd.geometry import rotations
 from mocapd.pipeline.frame_hub import FrameHub
@@ -182,8 +184,8 @@ def test_a_turned_camera_is_found_by_the_outline() -> None:
         stepping = Stepping(watched, shape)
         for frames in film.frames:
             stepping.step(frames)
-        every = Delivery(40, 0, 30.0, 30.0, 320)
-        verdicts.append(camera_verdict(second.name, into.take(), every, has_shirt=False))
+        every = Delivery(40, 0, 30.0, 30.0, CameraLink.PLAYER)
+        verdicts.append(camera_verdict(second.name, into.take(), every, 320, has_shirt=False))
     assert verdicts[0].match > 0.6
     assert verdicts[1].reprojection_px > verdicts[0].reprojection_px + 2.0
     assert verdicts[1].problem is not None

@@ -2,6 +2,7 @@
 
 from mocapd.boundary.files import is_file, user_path
 from mocapd.capture.base import Source
+from mocapd.capture.camera_link import CameraLink
 from mocapd.capture.file import FileSource, check_size, probe_video
 from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.source_request import SourceRequest
@@ -19,4 +20,6 @@ def _open(address: str, request: SourceRequest) -> Source:
     return FileSource(name, path, info.fps_hz, pace=request.pace, size_px=request.size_px)
 
 
-FILE = SourceKind(form="a video file", matches=_matches, open=_open, is_path=True)
+FILE = SourceKind(
+    form="a video file", link=CameraLink.PLAYER, matches=_matches, open=_open, is_path=True
+)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from mocapd.boundary.files import is_folder, user_path
 from mocapd.capture.base import Source
+from mocapd.capture.camera_link import CameraLink
 from mocapd.capture.capture_folder import CaptureFolder, folder_source, frame_sets, load_folder
 from mocapd.capture.file import check_size
 from mocapd.capture.kinds.source_kind import SourceKind
@@ -102,6 +103,7 @@ def _open_origin(origin: str, _cache_dir: Path, _progress: Progress) -> FolderOr
 
 FOLDER = SourceKind(
     form="FOLDER#camN of a capture folder",
+    link=CameraLink.PLAYER,
     matches=_matches,
     open=_open,
     is_path=True,

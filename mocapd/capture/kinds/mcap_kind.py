@@ -4,6 +4,7 @@ from pathlib import Path
 
 from mocapd.boundary.files import is_file, user_path
 from mocapd.capture.base import Source
+from mocapd.capture.camera_link import CameraLink
 from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.origin import OriginKind, Progress, split_address
 from mocapd.capture.recording.mcap_origin import McapOrigin, open_recording
@@ -37,6 +38,7 @@ def _open_origin(origin: str, _cache_dir: Path, _progress: Progress) -> McapOrig
 
 RECORDING = SourceKind(
     form="FILE.mcap#camN of a recording with pictures",
+    link=CameraLink.PLAYER,
     matches=_matches,
     open=_open,
     is_path=True,

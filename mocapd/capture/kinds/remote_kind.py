@@ -1,6 +1,7 @@
 """A camera of a camera node as a kind of source."""
 
 from mocapd.capture.base import Source
+from mocapd.capture.camera_link import CameraLink
 from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.remote.remote_address import FORM, is_remote, parse_remote
 from mocapd.capture.source_request import SourceRequest
@@ -13,4 +14,4 @@ def _open(address: str, request: SourceRequest) -> Source:
     return RemoteSource(request.name or remote.place, remote, request.size_px, request.settings)
 
 
-REMOTE = SourceKind(form=FORM, matches=is_remote, open=_open)
+REMOTE = SourceKind(form=FORM, link=CameraLink.NETWORK, matches=is_remote, open=_open)

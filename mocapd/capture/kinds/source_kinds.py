@@ -6,6 +6,7 @@ from pathlib import Path
 from mocapd.boundary.files import user_path
 from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
+from mocapd.capture.camera_link import CameraLink
 from mocapd.capture.kinds.file_kind import FILE
 from mocapd.capture.kinds.folder_kind import FOLDER
 from mocapd.capture.kinds.mcap_kind import RECORDING
@@ -64,6 +65,12 @@ def is_simulated(address: str) -> bool:
     """True for a simulated camera."""
     kind = kind_of(address)
     return kind is not None and kind.is_simulated
+
+
+def link_of(address: str) -> CameraLink:
+    """Where a camera's frames can be lost. Raises ConfigError for an invalid path."""
+    kind = kind_of(address)
+    return kind.link if kind is not None else CameraLink.PLAYER
 
 
 def is_settable(address: str) -> bool:

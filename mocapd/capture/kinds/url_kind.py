@@ -2,6 +2,7 @@
 
 from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
+from mocapd.capture.camera_link import CameraLink
 from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.url import UrlSource
@@ -17,4 +18,6 @@ def _open(address: str, request: SourceRequest) -> Source:
     return UrlSource(request.name or without_password(address), address, request.size_px)
 
 
-URL = SourceKind(form="an rtsp:// or http:// URL", matches=_matches, open=_open)
+URL = SourceKind(
+    form="an rtsp:// or http:// URL", link=CameraLink.NETWORK, matches=_matches, open=_open
+)

@@ -9,6 +9,7 @@ from pathlib import Path
 from mocapd.assets import asset_path
 from mocapd.boundary.files import user_path
 from mocapd.capture.base import Source
+from mocapd.capture.camera_link import CameraLink
 from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.origin import Origin, OriginKind, Progress
 from mocapd.capture.source_request import SourceRequest
@@ -81,6 +82,7 @@ def _open_origin(
 
 SIM = SourceKind(
     form="sim:SCENARIO#camN",
+    link=CameraLink.PLAYER,
     matches=_matches,
     open=_open,
     is_simulated=True,

@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mocapd.capture.base import Source
+from mocapd.capture.camera_link import CameraLink
 from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.webcam.identity import PREFIX, WebcamIdentity, parse_identity
@@ -36,9 +37,12 @@ def _webcam(name: str, where: WebcamIdentity | Path, request: SourceRequest) -> 
 
 WEBCAM = SourceKind(
     form="usb:PORT:VID:PID:SERIAL (see `mocapd cameras`)",
+    link=CameraLink.USB,
     matches=_is_identity,
     open=_open_identity,
     is_settable=True,
     identity=parse_identity,
 )
-NODE = SourceKind(form="/dev/videoN", matches=_is_node, open=_open_node, is_settable=True)
+NODE = SourceKind(
+    form="/dev/videoN", link=CameraLink.DEVICE, matches=_is_node, open=_open_node, is_settable=True
+)

@@ -31,12 +31,13 @@ class BoardShots:
         if place is not None:
             R, t_m = place.pose(self._board)
             layer = self._film.layer(R, t_m)
-            falling = irradiance(self._lamps, place.middle_m, -R[:, 2])
-            light, cover = (
-                cv2.GaussianBlur(part, (0, 0), _BLUR_PX) for part in (layer.light, layer.cover)
-            )
-            self._colour[layer.region] = light[..., None] * falling
-            self._cover[layer.region] = cover
+            if layer.cover.size:  # empty where the board is outside this camera's picture
+                falling = irradiance(self._lamps, place.middle_m, -R[:, 2])
+                light, cover = (
+                    cv2.GaussianBlur(part, (0, 0), _BLUR_PX) for part in (layer.light, layer.cover)
+                )
+                self._colour[layer.region] = light[..., None] * falling
+                self._cover[layer.region] = cover
         levels = np.ones(len(self._lamps.at_m))
         return [
             self._renderer.picture_of(self._colour, self._cover, levels, key) for key in noise_keys

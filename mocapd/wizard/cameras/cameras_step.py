@@ -13,17 +13,22 @@ from dataclasses import asdict, replace
 from mocapd.boundary.numbers import brief
 from mocapd.boundary.urls import without_password
 from mocapd.calibrate.light.light_check import light_problems
+from mocapd.calibrate.verification.delivery import Delivery, delivery_judgements
+from mocapd.calibrate.verification.grade import Grade
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.kinds.source_kinds import link_of
 from mocapd.capture.webcam.usb_bandwidth import Mode
 from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.clock import NS_PER_S
 from mocapd.errors import InputError, MocapdError, Problem
+from mocapd.pipeline.other_programs import OtherPrograms
 from mocapd.wizard.camera_trouble import too_few_cameras
 from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locking import CameraLocking, LockPhase
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.camera_nodes import node_of, offers, unused_nodes
 from mocapd.wizard.cameras.cameras_verbs import CAMERAS, ChangeMode, LeaveOut, Lock, Name, TakeIn
+from mocapd.wizard.cameras.machine_watch import MachineWatch
 from mocapd.wizard.cameras.picture_watch import PictureWatch
 from mocapd.wizard.commands import Command, OfCamera
 from mocapd.wizard.context import Context
@@ -33,13 +38,15 @@ from mocapd.wizard.step_names import StepName
 
 _LIST_EVERY_NS = 4 * NS_PER_S
 _LIGHT_EVERY_NS = NS_PER_S // 2
+_JUDGED_NS = 2 * NS_PER_S  # of frames for the judgement of a camera that is too slow
+_ENOUGH_RATE = 0.8  # of the requested rate
 
 
 class CamerasStep:
     """Args:
     cameras: the host's open cameras, in the order of the hub;
     nodes: lists the machine's cameras (`list_cameras`); () where they are simulated;
-    locks: the host's, see CameraLocks.
+    locks: the host's, see CameraLocks; load: of this machine, see MachineWatch.
     """
 
     name = StepName.CAMERAS
@@ -51,12 +58,14 @@ class CamerasStep:
         cameras: tuple[DraftCamera, ...],
         nodes: Callable[[], tuple[CameraInfo, ...]],
         locks: CameraLocks,
+        load: OtherPrograms | None = None,
     ) -> None:
         self._context, self._list_nodes, self._locks = context, nodes, locks
         earlier = {camera.id: camera for camera in context.draft.cameras}
         self._cameras = {camera.id: earlier.get(camera.id, camera) for camera in cameras}
         self._left_out = {camera.id for camera in cameras if earlier and camera.id not in earlier}
         self._watch = PictureWatch(self._cameras)
+        self._machine = MachineWatch(load if load is not None else OtherPrograms())
         self._locking = {name: self._new_locking(camera) for name, camera in self._cameras.items()}
         self._nodes: tuple[CameraInfo, ...] = ()
         self._list_trouble: tuple[Problem, ...] = ()
@@ -78,6 +87,7 @@ class CamerasStep:
     def tick(self, now_ns: int) -> None:
         """See Step."""
         self._statuses = self._context.statuses()
+        self._machine.tick(now_ns)
         for name in self._active_names:
             self._locking[name].tick(now_ns, self._is_live(name))
         due = self._listed_ns is None or now_ns - self._listed_ns > _LIST_EVERY_NS
@@ -240,16 +250,26 @@ class CamerasStep:
         if (
             self._locking[name].phase is LockPhase.LOCKED
             and status is not None
-            and 0.0 < status.fps_hz < 0.8 * camera.fps_hz
+            and 0.0 < status.fps_hz < _ENOUGH_RATE * camera.fps_hz
         ):
-            slow = (
-                Problem(
-                    f"delivers {status.fps_hz:.0f} of {camera.fps_hz:.0f} pictures a second",
-                    name,
-                    "use another USB port, end what else keeps the machine busy, or a lower mode",
-                ),
-            )
+            slow = (self._delivery_problem(camera, status.fps_hz),)
         return (*self._locking[name].trouble, *self._light.get(name, ()), *slow)
+
+    def _delivery_problem(self, camera: DraftCamera, rate_hz: float) -> Problem:
+        """Of a camera that is too slow, judged as in the step Check."""
+        recent = self._watch.recent(camera.id)
+        if len(recent.t_ns):
+            recent = recent.since(int(recent.t_ns[-1]) - _JUDGED_NS)
+        delivery = Delivery(
+            len(recent.t_ns),
+            recent.lost(camera.fps_hz),
+            rate_hz,
+            camera.fps_hz,
+            link_of(camera.source),
+            slow=self._machine.slow,
+        )
+        worst = min(delivery_judgements(delivery), key=lambda entry: entry[0] is Grade.GOOD)
+        return Problem(worst[1], camera.id, worst[2])
 
     def _done_sentence(self, has_problems: bool) -> str:
         count = len(self._active_names)

@@ -1,4 +1,4 @@
-"""Statistics of every frame for judging light and locks: the mean colour, and the brightness of the rows."""
+"""Statistics of every frame for judging light, locks and delivery: mean colour, brightness of the rows, and gaps."""
 
 import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from mocapd.clock import NS_PER_S
 from mocapd.types import Bytes, Floats, Frame, Ints
 
 _KEPT = 90  # frames of a camera
@@ -20,10 +21,11 @@ _BGR_TO_LUMA = np.array([0.114, 0.587, 0.299])
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recent:
-    """The last frames of one camera, oldest first: t_ns (n,); rows (n,r), mean luma 0..255 of some
-    50 rows spread over the picture; bgr (n,3), mean colour 0..255."""
+    """The last frames of one camera, oldest first: t_ns (n,); seq (n,), the camera's own count; rows (n,r), mean luma
+    0..255 of some 50 rows spread over the picture; bgr (n,3), mean colour 0..255."""
 
     t_ns: Ints
+    seq: Ints
     rows: Floats
     bgr: Floats
 
@@ -43,7 +45,13 @@ class Recent:
     def since(self, t_ns: int) -> "Recent":
         """The frames after that instant."""
         later = self.t_ns > t_ns
-        return Recent(self.t_ns[later], self.rows[later], self.bgr[later])
+        return Recent(self.t_ns[later], self.seq[later], self.rows[later], self.bgr[later])
+
+    def lost(self, asked_hz: float) -> int:
+        """Frames that the camera counted between these, and that never arrived. `seq` may come from an untrusted camera
+        node, so a gap counts at most the frames that fit into its time; it restarts when a camera is reopened."""
+        most = np.floor(np.diff(self.t_ns) / NS_PER_S * asked_hz).astype(np.int64)
+        return int(np.clip(np.diff(self.seq) - 1, 0, np.maximum(most, 0)).sum())
 
 
 def row_means(pixels: Bytes) -> tuple[Floats, Floats]:
@@ -60,7 +68,7 @@ class PictureWatch:
 
     def __init__(self, cameras: Iterable[str]) -> None:
         self._lock = threading.Lock()  # guards what follows
-        self._frames: dict[str, deque[tuple[int, Floats, Floats]]] = {
+        self._frames: dict[str, deque[tuple[int, int, Floats, Floats]]] = {
             name: deque(maxlen=_KEPT) for name in cameras
         }
 
@@ -71,15 +79,18 @@ class PictureWatch:
             own = self._frames.get(frame.camera)
             if own is None:
                 return
-            if own and own[-1][1].shape != rows.shape:
+            if own and own[-1][2].shape != rows.shape:
                 own.clear()  # reopened with another size
-            own.append((frame.t_ns, rows, bgr))
+            own.append((frame.t_ns, frame.seq, rows, bgr))
 
     def recent(self, camera: str) -> Recent:
         """The stored frames, of about the last three seconds."""
         with self._lock:
             own = list(self._frames[camera])
         if not own:
-            return Recent(np.zeros(0, np.int64), np.zeros((0, 1)), np.zeros((0, 3)))
-        times, rows, colours = zip(*own, strict=True)
-        return Recent(np.array(times, np.int64), np.array(rows), np.array(colours))
+            none = np.zeros(0, np.int64)
+            return Recent(none, none, np.zeros((0, 1)), np.zeros((0, 3)))
+        times, seqs, rows, colours = zip(*own, strict=True)
+        return Recent(
+            np.array(times, np.int64), np.array(seqs, np.int64), np.array(rows), np.array(colours)
+        )

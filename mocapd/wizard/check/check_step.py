@@ -16,11 +16,13 @@ from mocapd.body.skeleton import INDEX, standard_skeleton
 from mocapd.calibrate.verification.check_measure import Measure
 from mocapd.calibrate.verification.check_verdict import (
     CameraVerdict,
-    Delivery,
     camera_verdict,
     room_problems,
     verdict_json,
 )
+from mocapd.calibrate.verification.delivery import Delivery
+from mocapd.capture.camera_link import CameraLink
+from mocapd.capture.kinds.source_kinds import link_of
 from mocapd.clock import NS_PER_S, seconds
 from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.pipeline.bundler import CameraCounts
@@ -229,7 +231,10 @@ class CheckStep:
     def _judge(self) -> None:
         assert self._tracking is not None
         draft, statuses = self._context.draft, self._context.statuses()
-        counts, asked_hz = self._tracking.counts(), {c.id: c.fps_hz for c in draft.cameras}
+        counts, asked = (
+            self._tracking.counts(),
+            {c.id: (c.fps_hz, link_of(c.source)) for c in draft.cameras},
+        )
         slowness = self._tracking.metrics().slowness
         self._verdicts = tuple(
             camera_verdict(
@@ -239,10 +244,10 @@ class CheckStep:
                     self._counts[camera.name],
                     counts[camera.name],
                     statuses[camera.name].fps_hz if camera.name in statuses else 0.0,
-                    asked_hz.get(camera.name, 30.0),
-                    camera.size_px[0],
+                    *asked.get(camera.name, (30.0, CameraLink.DEVICE)),
                     slowness,
                 ),
+                camera.size_px[0],
                 draft.has_shirt,
             )
             for camera in self._tracking.rig.cameras
@@ -335,7 +340,7 @@ def _delivery(
     now: CameraCounts,
     rate_hz: float,
     asked_hz: float,
-    width_px: int,
+    link: CameraLink,
     slowness: Slowness | None,
 ) -> Delivery:
     """A camera's frames between two counts."""
@@ -344,7 +349,7 @@ def _delivery(
         now.lost - before.lost,
         rate_hz,
         asked_hz,
-        width_px,
+        link,
         late=now.late - before.late,
         slow=None if slowness is None else (slowness.what, slowness.fix),
     )
