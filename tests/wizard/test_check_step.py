@@ -21,7 +21,8 @@ from mocapd.capture.camera_link import CameraLink
 from mocapd.config.sections import TrackerSection
 from mocapd.errors import InputError
 from mocapd.wizard.check.check_settings import CheckSettings
-from mocapd.wizard.check.check_step import CheckStep, Phase, missing
+from mocapd.wizard.check.check_step import CheckStep, Phase
+from mocapd.wizard.check.missing_inputs import missing_inputs
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import load_draft, save_draft
@@ -107,14 +108,14 @@ def test_a_room_that_contradicts_the_person_is_told(
 
 
 def test_what_was_left_out_is_named_with_its_step(tmp_path: Path) -> None:
-    assert [(one.what, one.where) for one in missing(Draft())] == [
+    assert [(one.what, one.where) for one in missing_inputs(Draft())] == [
         ("where the cameras stand is not known", "room"),
         ("the wearer's stature is not known", "body"),
     ]
-    (colours,) = missing(replace(full_draft(), colours={}))
+    (colours,) = missing_inputs(replace(full_draft(), colours={}))
     assert colours.where == "colour"
     assert colours.what == "the shirt's colours in this light are not known"
-    assert not missing(full_draft())
+    assert not missing_inputs(full_draft())
     context = FakeContext(tmp_path, Draft())
     step = check_step(context)
     step.enter()

@@ -22,7 +22,7 @@ from mocapd.trackers.registry import Resources, build, measuring_tracker
 from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Rig
 from mocapd.wizard.body.body_step import BodyStep
-from mocapd.wizard.check.check_step import missing
+from mocapd.wizard.check.missing_inputs import missing_inputs
 from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.draft_file import FILE_NAME, UnfinishedSetup, read_draft, write_draft
@@ -129,11 +129,11 @@ def test_the_height_is_asked_for_and_nothing_else_of_the_body(tmp_path: Path) ->
 
 def test_colours_are_not_missing_but_a_second_camera_is() -> None:
     draft = replace(full_draft(), has_shirt=False, colours={})
-    assert missing(draft) == ()
+    assert missing_inputs(draft) == ()
     assert draft.rig is not None
     alone = replace(draft, rig=Rig(draft.rig.cameras[:1]))
-    assert ["second camera" in one.fix for one in missing(alone)] == [True]
-    assert missing(replace(alone, has_shirt=True, colours=full_draft().colours)) == ()
+    assert ["second camera" in one.fix for one in missing_inputs(alone)] == [True]
+    assert missing_inputs(replace(alone, has_shirt=True, colours=full_draft().colours)) == ()
 
 
 def test_it_is_remembered_in_both_files(tmp_path: Path) -> None:

@@ -32,9 +32,9 @@ from mocapd.types import Tracking
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.check_tracking import CheckTracker, CheckTracking, LoadTracker, prepare
 from mocapd.wizard.check.check_verbs import CHECK, MeasureAgain, Save
+from mocapd.wizard.check.missing_inputs import missing_inputs
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
-from mocapd.wizard.draft import Draft
 from mocapd.wizard.intrinsics.saved_intrinsics import store_intrinsics
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import calibration_of, save_draft
@@ -103,7 +103,7 @@ class CheckStep:
         """See Step."""
         draft = self._context.draft
         self._context.scene(Scene.MOVING if draft.has_shirt else Scene.EMPTY)
-        self._problems = missing(draft)
+        self._problems = missing_inputs(draft)
         if self._problems:
             self._phase = Phase.MISSING
             return
@@ -303,36 +303,6 @@ class CheckStep:
         if self._problems or any(verdict.problem for verdict in self._verdicts):
             return StepState.DONE, "See below what is doubtful; mend it, or save it as it is.", 1.0
         return StepState.DONE, "All is well: save it.", 1.0
-
-
-def missing(draft: Draft) -> tuple[Problem, ...]:
-    """The missing inputs of the tracker."""
-    problems = []
-    if draft.rig is None:
-        problems.append(
-            Problem("where the cameras stand is not known", "room", "do the step Room first")
-        )
-    elif draft.has_shirt and not draft.colours:
-        problems.append(
-            Problem(
-                "the shirt's colours in this light are not known",
-                "colour",
-                "do the step Colour first",
-            )
-        )
-    elif not draft.has_shirt and len(draft.rig.cameras) < 2:
-        problems.append(
-            Problem(
-                "one camera alone cannot track without a shirt",
-                "cameras",
-                "add a second camera in the step Cameras, or wear the shirt",
-            )
-        )
-    if draft.stature_m is None:
-        problems.append(
-            Problem("the wearer's stature is not known", "body", "type it in the step Body")
-        )
-    return tuple(problems)
 
 
 def _delivery(
