@@ -1,9 +1,7 @@
 """What the kernels take: named tuples of arrays, passed as one argument.
 
 All arrays are C-contiguous and writable, so that each kernel is compiled for one set of types. Kernels
-unpack them in their first lines, so that they take `plain` ones as well. The names of such types are in
-numba's caches: where one is renamed or moved, its kernels' files must change too, or an update ends in a
-cache that cannot be read.
+unpack them in their first lines, so that they take `plain` ones as well.
 """
 
 from typing import Any, NamedTuple, TypeVar, cast

@@ -10,11 +10,13 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from mocapd.body.arrays import plain
 from mocapd.tracking.cues.clothes.appearance_kernels import (
     BITS,
     DISTANCE_GRID_PX,
     N_BINS,
     N_CLASSES,
+    RegionCosts,
     classify_regions,
     count_colours,
     log_table,
@@ -130,11 +132,13 @@ class Appearance:
         """The region (h,w) of each pixel of a picture (h,w,3); see `classify_regions`."""
         p = self._params
         ids = np.empty(before.shape, np.uint8)
-        classify_regions(
-            picture, before, distance_px, self._table, p.per_px, p.longest_px, p.reach_px,
-            p.other_cost if self._knows_others else 1e6, p.other_per_px, p.other_px,
-            p.shadow_costs, p.shadow_per_px, p.shadow_px, on_floor, person_odds, p.person_weight, p.person_most, ids,
+        costs = RegionCosts(
+            p.per_px, p.longest_px, p.reach_px, p.other_cost if self._knows_others else 1e6, p.other_per_px, p.other_px,
+            p.shadow_costs, p.shadow_per_px, p.shadow_px, p.person_weight, p.person_most,
         )  # fmt: skip
+        classify_regions(
+            picture, before, distance_px, self._table, on_floor, person_odds, plain(costs), ids
+        )
         return ids
 
     def _refresh(self) -> None:

@@ -1,5 +1,7 @@
 """Colours of the body's regions as histograms, and which region a pixel belongs to."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -11,6 +13,29 @@ N_CLASSES = 8  # the seven regions, and 0: none of them
 BITS = 4  # of each channel
 DISTANCE_GRID_PX = 2  # no colour depends on a pixel's distance
 N_BINS = 1 << 3 * BITS
+
+
+class RegionCosts(NamedTuple):
+    """What a pixel's explanations cost, as logarithms of likelihoods.
+
+    A region pays per_px for each pixel of distance, up to longest_px; beyond reach_px from all regions nothing is. What is
+    no region pays other, and other_per_px for each pixel that it is away from the body, up to other_px: limbs move there.
+    What may be a shadow pays at most shadow (a sure one, a likely one), and shadow_per_px for each pixel by which it is
+    nearer to the body than shadow_px. person_weight of the network's odds, up to person_most, is spared by all regions,
+    and paid where negative.
+    """
+
+    per_px: float
+    longest_px: float
+    reach_px: float
+    other: float
+    other_per_px: float
+    other_px: float
+    shadow: tuple[float, float]
+    shadow_per_px: float
+    shadow_px: float
+    person_weight: float
+    person_most: float
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -88,30 +113,18 @@ def classify_regions(
     before: NDArray[np.uint8],
     distance_px: Singles,
     table: Singles,
-    per_px: float,
-    longest_px: float,
-    reach_px: float,
-    other_cost: float,
-    other_per_px: float,
-    other_px: float,
-    shadow_costs: tuple[float, float],
-    shadow_per_px: float,
-    shadow_px: float,
     on_floor: NDArray[np.uint8],
     person_odds: Singles,
-    person_weight: float,
-    person_most: float,
+    costs: RegionCosts,
     out: NDArray[np.uint8],
 ) -> None:
     """out (h,w): the region whose colour and place explain each pixel best, 0 for none.
 
-    before (h,w): as of `stands_before`; distance_px: of `region_distances`; table (8,4096): `log_table`. A
-    region pays per_px for each pixel of distance, up to longest_px. What is no region pays other_cost, and other_per_px for
-    each pixel that it is away from the body, up to other_px: limbs move there. What may be a shadow pays at most shadow_costs
-    (a sure one, a likely one), and shadow_per_px for each pixel by which it is nearer to the body than shadow_px; where
-    on_floor (h,w) is 0, only sure ones are shadows. person_weight of person_odds (h,w), up to person_most, is spared by all
-    regions, and paid where negative. Beyond reach_px from all regions nothing is.
+    before (h,w): as of `stands_before`; distance_px: of `region_distances`; table (8,4096): `log_table`; on_floor (h,w):
+    where it is 0, only sure shadows are shadows; person_odds (h,w): log-odds of the network.
     """
+    per_px, longest_px, reach_px, other_cost, other_per_px, other_px = costs[:6]
+    shadow_costs, shadow_per_px, shadow_px, person_weight, person_most = costs[6:]
     h, w = before.shape
     for y in range(h):
         for x in range(w):

@@ -6,6 +6,7 @@ import weakref
 import numpy as np
 import pytest
 
+from mocapd.body.arrays import plain
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
@@ -14,6 +15,7 @@ from mocapd.tracking.cues.clothes.appearance_kernels import (
     BITS,
     N_BINS,
     N_CLASSES,
+    RegionCosts,
     classify_regions,
     log_table,
 )
@@ -160,11 +162,11 @@ def is_body(what: int, on_floor: int, person_odds: float) -> bool:
     """Of a dark pixel 6 px from the body."""
     table = np.full((N_CLASSES, N_BINS), 5.0, np.float32)
     distance = np.full((N_CLASSES - 1, 1, 1), 6.0, np.float32)
+    costs = RegionCosts(0.25, 40.0, 26.0, 1e6, 0.5, 8.0, (1.5, 4.0), 0.75, 4.0, 1.0, 3.0)
     out = np.empty((1, 1), np.uint8)
     classify_regions(
-        np.zeros((1, 1, 3), np.uint8), np.full((1, 1), what, np.uint8), distance, table, 0.25, 40.0, 26.0,
-        1e6, 0.5, 8.0, (1.5, 4.0), 0.75, 4.0, np.full((1, 1), on_floor, np.uint8),
-        np.full((1, 1), person_odds, np.float32), 1.0, 3.0, out,
+        np.zeros((1, 1, 3), np.uint8), np.full((1, 1), what, np.uint8), distance, table,
+        np.full((1, 1), on_floor, np.uint8), np.full((1, 1), person_odds, np.float32), plain(costs), out,
     )  # fmt: skip
     return bool(out[0, 0])
 
