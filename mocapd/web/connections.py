@@ -18,7 +18,9 @@ MOST = 64  # connections at once
 ACCEPTED_AT_ONCE = 16  # their requests are read before MOST further connections arrive
 QUEUE = 512  # the system's backlog of connections
 LONGEST_HEAD = 16 << 10  # address and headers of a request [bytes]
-REQUEST_S = 5.0  # from its first byte, or from connecting, until a request is whole [s]
+# from its first byte, or from connecting, until a request is whole [s]: a browser on a busy machine pauses for seconds, and
+# a script of the page that is cut off leaves it dead
+REQUEST_S = 20.0
 STALLED_S = 20.0  # timeout of a client that does not read [s]
 
 

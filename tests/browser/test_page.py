@@ -180,3 +180,26 @@ def test_a_second_browser_looks_on_until_it_takes_over(
         expect(second.locator("#again")).to_be_enabled(timeout=WAIT_MS)
         expect(page.locator("#notice")).to_contain_text("Another window", timeout=WAIT_MS)
         assert re.fullmatch(r"\S+", second.locator("#step-title").inner_text())
+
+
+def test_a_connection_that_is_never_answered_is_tried_again(page: Page, url: str) -> None:
+    page.add_init_script(
+        """const Real = window.WebSocket;
+        let tried = 0;
+        window.WebSocket = class extends EventTarget {
+          static OPEN = Real.OPEN;
+          constructor(url) {
+            super();
+            if (String(url).endsWith("/ws") && tried++ === 0) this.readyState = Real.CONNECTING;
+            else return new Real(url);
+          }
+          close() { this.dispatchEvent(new CloseEvent("close")); }
+        };"""
+    )
+    page.clock.install()
+    page.goto(f"{url}#setup")
+    expect(page.locator("#connection")).to_have_text("Connecting", timeout=WAIT_MS)
+    page.clock.fast_forward(11_000)
+    expect(page.locator("#connection")).not_to_have_text("Connecting", timeout=WAIT_MS)
+    page.clock.fast_forward(1_000)
+    page.locator("#step-title").wait_for(timeout=WAIT_MS)

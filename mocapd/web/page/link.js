@@ -12,6 +12,7 @@
 const PLACE = new URL("../", import.meta.url); // of the page; its path is another with each start
 const FIRST_PAUSE_MS = 300;
 const LONGEST_PAUSE_MS = 3000;
+const ANSWER_MS = 10000; // without an answer for so long the browser would wait for minutes, or for ever
 
 /** A WebSocket that is opened again whenever it closes. */
 export class Socket {
@@ -31,12 +32,17 @@ export class Socket {
     const socket = new WebSocket(this.url);
     this.socket = socket;
     socket.binaryType = "arraybuffer";
+    const unanswered = setTimeout(() => socket.close(), ANSWER_MS);
     socket.addEventListener("open", () => {
+      clearTimeout(unanswered);
       this.pause = FIRST_PAUSE_MS;
       this.onState("open");
     });
     socket.addEventListener("message", this.onMessage);
-    socket.addEventListener("close", () => this.again());
+    socket.addEventListener("close", () => {
+      clearTimeout(unanswered);
+      this.again();
+    });
   }
 
   async again() {
@@ -64,7 +70,9 @@ export class Socket {
 /** A refused WebSocket tells nothing; a refused page does: the daemon was started anew. */
 async function isRefused() {
   try {
-    const answer = await fetch(new URL("status", PLACE));
+    const answer = await fetch(new URL("status", PLACE), {
+      signal: AbortSignal.timeout(ANSWER_MS),
+    });
     return answer.status === 401 || answer.status === 403;
   } catch {
     return false;
