@@ -19,19 +19,19 @@ class RegionCosts(NamedTuple):
     """What a pixel's explanations cost, as logarithms of likelihoods.
 
     A region pays per_px for each pixel of distance, up to longest_px; beyond reach_px from all regions nothing is. What is
-    no region pays other, and other_per_px for each pixel that it is away from the body, up to other_px: limbs move there.
-    What may be a shadow pays at most shadow (a sure one, a likely one), and shadow_per_px for each pixel by which it is
-    nearer to the body than shadow_px. person_weight of the network's odds, up to person_most, is spared by all regions,
-    and paid where negative.
+    no region pays other_cost, and other_per_px for each pixel that it is away from the body, up to other_px: limbs move
+    there. What may be a shadow pays at most shadow_costs (a sure one, a likely one), and shadow_per_px for each pixel by
+    which it is nearer to the body than shadow_px. person_weight of the network's odds, up to person_most, is spared by
+    all regions, and paid where negative.
     """
 
     per_px: float
     longest_px: float
     reach_px: float
-    other: float
+    other_cost: float
     other_per_px: float
     other_px: float
-    shadow: tuple[float, float]
+    shadow_costs: tuple[float, float]
     shadow_per_px: float
     shadow_px: float
     person_weight: float
