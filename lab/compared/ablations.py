@@ -10,7 +10,6 @@ from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 
 _SOFT_M, _SOFT_RAD = 1e3, 1e3  # standard deviations that hold nothing
 _CERTAIN = 1e-6  # share of a limb's pixels, which any limb that is drawn has
-_FOREVER = 1 << 30
 _MORE_THAN_SAME = 1.01  # share of two regions' colours that is the same, correlation of two patches
 
 

@@ -22,7 +22,7 @@ class Effort(Enum):
 class OptionalWork:
     """Amounts of optional work; the most expensive comes first.
 
-    hypotheses: ticks (see `ticks.py`) between tests of other arm and leg poses and of the opposite facing direction;
+    hypotheses: ticks (see `ticks.py`) between tests of other arm and leg poses;
     network, depths, learning, ghosts: factors on the usual interval between uses of the keypoint network, stereo depth
     measurements, updates of the clothes' and the shirt's colours, and searches for ghosts in the background; legs: with a
     trunk from the shirt, legs and head are fitted in one of this many frame sets and predicted in the others;

@@ -15,15 +15,19 @@ def prediction_prior(
     last: Fit,
     velocity: Floats,
     dt_s: float,
-    confirmed: Mapping[str, float],
+    confirmed_arms: Mapping[str, float],
+    sure_arm: float,
     params: MotionPriorParams,
 ) -> Floats:
     """Information (n_pose,n_pose) of a pose predicted dt_s after the last fit, with velocity (n_pose,) per second.
 
-    confirmed: weight 0..1 of an arm's prior by side, full from 1 on.
+    confirmed_arms: shares 0..1 by side, see `Fit`; sure_arm: that from which an arm's prior has full weight.
     """
     columns = fitter.model.space.columns
-    arms = [(columns(f"{side}_arm"), min(weight, 1.0)) for side, weight in confirmed.items()]
+    arms = [
+        (columns(f"{side}_arm"), min(share / sure_arm, 1.0))
+        for side, share in confirmed_arms.items()
+    ]
     return predicted_information(
         last.covariance, velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd, arms, params
     )

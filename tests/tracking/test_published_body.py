@@ -18,7 +18,7 @@ from mocapd.tracking.pose_filter import PoseFilter
 from mocapd.tracking.published_body import CueEstimates, publish_body
 from mocapd.tracking.track_state import TrackState
 from mocapd.types import Floats, Tracking
-from tests.tracking.hypotheses.standing_body import FITTER, standing
+from tests.tracking.hypotheses.standing_body import FITTER, drawn, standing
 
 pytestmark = pytest.mark.kernels
 
@@ -32,16 +32,6 @@ def raised(state: MotionState) -> MotionState:
     local = state.local_xyzw.copy()
     local[INDEX["leftUpperArm"]] = rotations.exp(np.array([0.0, 0.0, 0.7]))
     return replace(state, local_xyzw=local)
-
-
-def drawn(state: MotionState) -> list[View]:
-    views = []
-    for i, drawing in enumerate(FITTER.drawings):
-        roi = drawing.region(state, 0.0, 26)
-        assert roi is not None
-        ids = drawing.render(state, 0.0, roi).copy()
-        views.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), 0.0))
-    return views
 
 
 def published(

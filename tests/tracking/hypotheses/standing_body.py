@@ -8,6 +8,7 @@ from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.regions import region_labels
 from tests.geometry.rigs import ring
@@ -27,3 +28,14 @@ def standing(yaw_rad: float, spread_rad: float) -> MotionState:
     return MotionState(
         BODY.rest_m[0].copy(), local, np.zeros(BODY.n_pose), np.ones(BODY.n_shape), initial_information(space)
     )  # fmt: skip
+
+
+def drawn(state: MotionState) -> list[View]:
+    """Pictures in which each region is where this body has it."""
+    views = []
+    for i, drawing in enumerate(FITTER.drawings):
+        roi = drawing.region(state, 0.0, 26)
+        assert roi is not None
+        ids = drawing.render(state, 0.0, roi).copy()
+        views.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), 0.0))
+    return views

@@ -26,7 +26,7 @@ from mocapd.tracking.hypotheses.keypoint_starts import (
 )
 from mocapd.tracking.ticks import Ticks
 from mocapd.types import Floats, FrameSet, Ints
-from tests.tracking.hypotheses.standing_body import BODY, FITTER, standing
+from tests.tracking.hypotheses.standing_body import BODY, FITTER, drawn, standing
 
 pytestmark = pytest.mark.kernels
 
@@ -65,17 +65,6 @@ def kicking(state: MotionState, side: str) -> MotionState:
     local = state.local_xyzw.copy()
     local[INDEX[side + "UpperLeg"]] = rotations.exp(np.array([-1.2, 0.0, 0.0]))
     return replace(state, local_xyzw=local)
-
-
-def drawn(state: MotionState) -> list[View]:
-    """Pictures in which each region is where this body has it."""
-    views = []
-    for i, drawing in enumerate(FITTER.drawings):
-        roi = drawing.region(state, 0.0, 26)
-        assert roi is not None
-        ids = drawing.render(state, 0.0, roi).copy()
-        views.append(View(i, roi, ids, np.full(ids.shape, 255, np.uint8), 0.0))
-    return views
 
 
 def situation(joints: JointTerm, evidence: PoseEvidence) -> HypothesisContext:

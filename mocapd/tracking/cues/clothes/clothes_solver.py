@@ -168,9 +168,8 @@ class ClothesSolver:
             probe("clothes.depths")
         motion = None
         if last is not None:
-            confirmed, least = confirmed_arms(fitter, last, predicted, views, p)
-            weights = {side: share / least for side, share in confirmed.items()}
-            motion = prediction_prior(fitter, last, state.motion.velocity, dt_s, weights, p.motion)
+            arms = confirmed_arms(fitter, last, predicted, views, p)
+            motion = prediction_prior(fitter, last, state.motion.velocity, dt_s, *arms, p.motion)
         planted = self._planted()
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
@@ -338,7 +337,7 @@ class ClothesSolver:
         p = self.params
         by_trunk = dict.fromkeys(SIDES, 1.0)  # the arms are where the shirt placed them
         motion = prediction_prior(
-            self.fitter, state.whole, state.motion.velocity, dt_s, by_trunk, p.motion
+            self.fitter, state.whole, state.motion.velocity, dt_s, by_trunk, 1.0, p.motion
         )
         return np.asarray(motion + np.diag(diagonal))
 

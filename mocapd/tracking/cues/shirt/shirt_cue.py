@@ -140,8 +140,9 @@ class ShirtCue:
             and previous.taught_s < p.shape.learning_s
             and last.match > p.shape.least_match
         )
-        weights = {side: s / p.limbs.uncertain_arm for side, s in last.confirmed_arms.items()}
-        motion = prediction_prior(fitter, last, start.velocity, dt_s, weights, p.motion)
+        motion = prediction_prior(
+            fitter, last, start.velocity, dt_s, last.confirmed_arms, p.limbs.uncertain_arm, p.motion
+        )
         terms = stereo_distance_terms(fitter, start, views, frames, frame_index, p.distances)
         fit = fitter.fit(
             start, views, dt_s, p.fit.iterations - self.work.fewer_iterations, learning, rendered=True,
