@@ -86,7 +86,7 @@ def evaluation(
         raise ConfigError("no capture is given", "lab.evaluation", "name one, or add --simulated")
     with ProgressBars() as progress:
         if simulated is not None:
-            sessions = planned(simulated, plain=clothes is Worn.PLAIN)
+            sessions = planned(simulated, "plain" if clothes is Worn.PLAIN else "shirt")
             made = recorded(sessions, effective.cache_dir, progress)
             check_suits(name, sessions, made)
             folders += made

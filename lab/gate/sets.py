@@ -13,7 +13,7 @@ from mocapd.evaluate.capture_eval import Case, open_case
 from mocapd.session.tracker_setup import Progress
 
 _KEY = re.compile(r"-[0-9a-f]{12}$")
-SETS = ("dev", "shirt", "plain", "failures", "interruptions", "rest")
+SETS = ("dev", "shirt", "plain", "rings", "failures", "interruptions", "rest")
 _SCORED_WHOLE = ("stereo_", "ring4_")  # captures of the whole body
 
 
@@ -43,7 +43,10 @@ def cases_of(
         "dev": lambda: _dev(captures),
         "shirt": lambda: _simulated("shirt", recorded_set.planned(clips), cache_dir, progress),
         "plain": lambda: _simulated(
-            "plain", recorded_set.planned(clips, plain=True), cache_dir, progress
+            "plain", recorded_set.planned(clips, "plain"), cache_dir, progress
+        ),
+        "rings": lambda: _simulated(
+            "rings", recorded_set.planned(clips, "rings"), cache_dir, progress
         ),
         "failures": lambda: _simulated(
             "failures", recorded_set.failures()[:-1], cache_dir, progress

@@ -32,7 +32,7 @@ from mocapd.sim.person_spec import Bystander, MotionSpec, PoseKeyframe
 from mocapd.sim.scenario import CameraSpec, Scenario, Thing
 
 PLAIN_SESSIONS = 20
-_MOST_WAY_M = 2.2
+MOST_WAY_M = 2.2
 _LOOK_AT_M = (0.0, 0.92, 0.0)
 # of whole-body motion, in the names of the public collections of clips
 _LEG_WORDS = (
@@ -87,7 +87,7 @@ _STANCES = ("relaxed", "relaxed", "t_pose")
 def plain_plan(clips: Sequence[MotionClip], scenes: Sequence[Scenario]) -> list[PlannedSession]:
     """The sessions, by number; fewer when few clips are long enough and stay in one place."""
     clip_s = SECONDS - EMPTY_S - STAND_S - BLEND_S
-    starts = [(clip, within(clip, clip_s, _MOST_WAY_M)) for clip in clips]
+    starts = [(clip, within(clip, clip_s, MOST_WAY_M)) for clip in clips]
     usable = [(clip, begin) for clip, begin in starts if begin is not None]
     legs = [one for one in usable if any(word in one[0].name.lower() for word in _LEG_WORDS)]
     others = [one for one in usable if one not in legs]
@@ -109,7 +109,7 @@ def plain_plan(clips: Sequence[MotionClip], scenes: Sequence[Scenario]) -> list[
             grounded=True,
         )
         name = f"plain{number:02d}_{rig.name}_{scene.name}_{clip.name}"
-        scenario = _scenario(name, number, scene, rig, where)
+        scenario = plain_scenario(name, number, scene, rig, where)
         sessions.append(PlannedSession(name, scenario, clip, where))
     return sessions
 
@@ -128,7 +128,10 @@ def _spread(usable: list[tuple[MotionClip, int]], most: int) -> list[tuple[Motio
     return [usable[i] for i in picked.tolist()] if usable else []
 
 
-def _scenario(name: str, number: int, scene: Scenario, rig: PlainRig, where: Placement) -> Scenario:
+def plain_scenario(
+    name: str, number: int, scene: Scenario, rig: PlainRig, where: Placement
+) -> Scenario:
+    """The scene with another body in plain clothes, other cameras and lights; number: of the variation."""
     vary = Variation(np.random.default_rng([2027, number]))
     body = varied_body(
         vary, whole=True, thigh_length=vary(0.02), shank_length=vary(0.02), hip_width=vary(0.04),

@@ -2,12 +2,15 @@
 
 import hashlib
 import shutil
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 from lab.simulated.export import export_capture
 from lab.simulated.failure_scenes import failure_sessions
-from lab.simulated.motion_clip import performed, read_clip
+from lab.simulated.motion_clip import MotionClip, performed, read_clip
 from lab.simulated.plain_plan import plain_plan
+from lab.simulated.ring_plan import ring_plan
 from lab.simulated.session_plan import PlannedSession, plan
 from mocapd.assets import asset_path
 from mocapd.errors import CannotCreateError, ConfigError, InputError
@@ -19,13 +22,18 @@ from mocapd.trackers.registry import TRACKERS, entry
 SCENES = ("living_room", "outdoor", "gym_mono")
 
 
-def planned(clips: Path, *, plain: bool = False) -> list[PlannedSession]:
-    """The sessions of a folder of clips, in the shirt or in plain clothes. Raises InputError when there is none
-    that can be used."""
+Plan = Callable[[Sequence[MotionClip], Sequence[Scenario]], list[PlannedSession]]
+PLANS: Mapping[str, Plan] = MappingProxyType(
+    {"shirt": plan, "plain": plain_plan, "rings": ring_plan}
+)
+
+
+def planned(clips: Path, name: str = "shirt") -> list[PlannedSession]:
+    """The sessions of a folder of clips by the plan of this name in PLANS. Raises InputError when there is none that can be
+    used."""
     paths = sorted(clips.glob("[!.]*.npz")) if clips.is_dir() else []
     scenes = [load_scenario(asset_path("scenarios") / f"{name}.toml") for name in SCENES]
-    make = plain_plan if plain else plan
-    sessions = make([read_clip(path) for path in paths], scenes)
+    sessions = PLANS[name]([read_clip(path) for path in paths], scenes)
     if not sessions:
         raise InputError(
             "has no clip of motion (*.npz) that is long enough and stays in one place",

@@ -168,9 +168,9 @@ LEGS = ("kick", "squat", "jump", "hop", "walk")
 def test_sessions_without_the_shirt_are_of_whole_bodies_and_many_rigs(tmp_path: Path) -> None:
     for n in range(30):
         clip_file(tmp_path, f"{LEGS[n % 5]}{n:02d}" if n % 3 == 0 else f"clip{n:02d}")
-    sessions = planned(tmp_path, plain=True)
+    sessions = planned(tmp_path, "plain")
     assert len(sessions) == PLAIN_SESSIONS >= 16
-    assert [s.scenario for s in planned(tmp_path, plain=True)] == [s.scenario for s in sessions]
+    assert [s.scenario for s in planned(tmp_path, "plain")] == [s.scenario for s in sessions]
     assert all(s.scenario.body.whole for s in sessions)
     assert {s.scenario.clothes.shirt for s in sessions} == {"plain"}
     assert {s.scenario.clothes.sleeves for s in sessions} == {"long", "short"}
@@ -191,7 +191,7 @@ def _apart_m(session: PlannedSession) -> Floats:
 def test_a_stereo_pair_looks_one_way_from_twelve_centimetres_apart(tmp_path: Path) -> None:
     for n in range(20):
         clip_file(tmp_path, f"clip{n:02d}")
-    pairs = [s for s in planned(tmp_path, plain=True) if "_stereo_" in s.name]
+    pairs = [s for s in planned(tmp_path, "plain") if "_stereo_" in s.name]
     assert len(pairs) >= 8
     for session in (*pairs, *(s for s in failures() if "_stereo_" in s.name)):
         first, second = rig_of(session.scenario).cameras
@@ -200,7 +200,7 @@ def test_a_stereo_pair_looks_one_way_from_twelve_centimetres_apart(tmp_path: Pat
         assert _apart_m(session)[0] > 0.119
         np.testing.assert_allclose(first.R, second.R, atol=1e-9)
         assert not any(camera.clock_offset_s for camera in session.scenario.cameras)
-    wide = [s for s in planned(tmp_path, plain=True) if "_pair_" in s.name]
+    wide = [s for s in planned(tmp_path, "plain") if "_pair_" in s.name]
     assert all(np.linalg.norm(_apart_m(s)) > 1.5 for s in wide)
 
 
