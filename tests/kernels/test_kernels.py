@@ -84,6 +84,34 @@ def test_code_is_kept_until_a_kernel_or_one_that_it_calls_changes(tmp_path: Path
     assert kernels.said() == "6.0"  # an earlier version's is there still
 
 
+def test_kept_code_is_loaded_without_the_libraries_that_compiling_needs(tmp_path: Path) -> None:
+    """scipy's linear algebra, which numba imports to compile anything, takes a fifth of a second at each start."""
+    kernels = Kernels(tmp_path)
+    kernels.said()
+    after = "\nprint('scipy.linalg' in sys.modules)"
+    command = [sys.executable, "-c", PROGRAM + after, str(kernels.folder), str(kernels.cache)]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    assert done.stdout.split() == ["6.0", "False"]
+
+
+def test_the_trackers_kernels_use_nothing_of_numpy_that_takes_long_to_compile_and_to_load() -> None:
+    """Sums, products, sorting and comparing of whole arrays are compiled from Python, a second each, and their kept code
+    imports scipy's linear algebra: kernels have loops instead."""
+    known = set(vars(np)) | set(dir(np.ndarray))
+    used = {
+        name
+        for row in rows_of(read_table(), {"shirt", "clothes", "auto"})
+        for code in _codes(row.dispatcher.py_func.__code__)
+        for name in code.co_names
+        if name in known and name not in row.dispatcher.py_func.__globals__
+    }
+    builtin = {"abs", "float", "int", "len", "max", "min", "range", "round"}
+    types = {"bool_", "float32", "int32", "int64", "uint8", "uint64"}
+    numbers = {"arctan2", "ceil", "copysign", "cos", "exp", "floor", "inf", "log", "sin", "sqrt"}
+    arrays = {"array", "copy", "empty", "full", "ravel", "reshape", "shape", "view", "zeros"}
+    assert used <= builtin | types | numbers | arrays
+
+
 def test_code_is_not_kept_for_a_named_tuple_that_has_moved() -> None:
     def made_of(module: str) -> Any:
         class Inner(NamedTuple):

@@ -67,44 +67,42 @@ def count_colours(
 @njit(cache=True, nogil=True)
 def log_table(counts: Singles, least: float, scratch: Singles, out: Singles) -> None:
     """out (8,4096): minus the logarithm of each class's share of its own pixels, smoothed over neighbouring bins (1 2 1)
-    in all three channels. scratch (16,16,16); least: the share of a colour that was never seen."""
+    in all three channels. scratch (4096,); least: the share of a colour that was never seen."""
     n = 1 << BITS
     never = -np.log(np.float32(0.0) + np.float32(least))
-    for k in range(len(counts)):
-        if not counts[k].any():
-            out[k] = never
-            continue
-        total = np.float32(1e-3)
+    for k in range(counts.shape[0]):
+        old, new = counts[k], out[k]
+        total, is_empty = np.float32(1e-3), True
         for i in range(N_BINS):
-            total += counts[k, i]
-        old, new = counts[k].reshape(n, n, n), out[k].reshape(n, n, n)
-        for b in range(n):
-            for g in range(n):
-                row = old[b, g]
-                _smooth(row[:-2], row[1:-1], row[2:], new[b, g, 1:-1])
-                _smooth(row[:1], row[:1], row[1:2], new[b, g, :1])
-                _smooth(row[-2:-1], row[-1:], row[-1:], new[b, g, -1:])
-        for b in range(n):
-            for g in range(n):
-                below, above = max(g - 1, 0), min(g + 1, n - 1)
-                _smooth(new[b, below], new[b, g], new[b, above], scratch[b, g])
-        layers = scratch.reshape(n, n * n)
-        for b in range(n):
-            below, above = max(b - 1, 0), min(b + 1, n - 1)
-            smooth = out[k, b * n * n : (b + 1) * n * n]
-            _smooth(layers[below], layers[b], layers[above], smooth)
-            for i in range(n * n):
-                # most colours are seen nowhere, and a logarithm takes a while
-                share = smooth[i] / total + np.float32(least)
-                smooth[i] = never if smooth[i] == 0.0 else -np.log(share)
+            total += old[i]
+            is_empty &= old[i] == 0.0
+        if is_empty:
+            for i in range(N_BINS):
+                new[i] = never
+            continue
+        _smooth(old, 1, new)
+        _smooth(new, n, scratch)
+        _smooth(scratch, n * n, new)
+        for i in range(N_BINS):
+            # most colours are seen nowhere, and a logarithm takes a while
+            share = new[i] / total + np.float32(least)
+            new[i] = never if new[i] == 0.0 else -np.log(share)
 
 
-@njit(cache=True, nogil=True, inline="always")
-def _smooth(before: Singles, here: Singles, after: Singles, out: Singles) -> None:
-    """out (n,): a half of what is here and a quarter of either neighbour."""
+@njit(cache=True, nogil=True)
+def _smooth(bins: Singles, step: int, out: Singles) -> None:
+    """out (4096,): a half of each bin and a quarter of either neighbour along one channel, `step` bins away."""
     quarter, half = np.float32(0.25), np.float32(0.5)
-    for i in range(out.shape[0]):
-        out[i] = quarter * (before[i] + after[i]) + half * here[i]
+    n = 1 << BITS
+    for i in range(step, N_BINS - step):
+        out[i] = quarter * (bins[i - step] + bins[i + step]) + half * bins[i]
+    # the first and the last level are their own neighbours
+    for first in range(0, N_BINS, n * step):
+        last = first + (n - 1) * step
+        for i in range(step):
+            low, high = bins[first + i], bins[last + i]
+            out[first + i] = quarter * (low + bins[first + step + i]) + half * low
+            out[last + i] = quarter * (bins[last - step + i] + high) + half * high
 
 
 @njit(cache=True, nogil=True)
