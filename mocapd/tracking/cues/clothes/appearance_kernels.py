@@ -69,40 +69,35 @@ def log_table(counts: Singles, least: float, scratch: Singles, out: Singles) -> 
     """out (8,4096): minus the logarithm of each class's share of its own pixels, smoothed over neighbouring bins (1 2 1)
     in all three channels. scratch (4096,); least: the share of a colour that was never seen."""
     n = 1 << BITS
+    quarter, half = np.float32(0.25), np.float32(0.5)
     never = -np.log(np.float32(0.0) + np.float32(least))
     for k in range(counts.shape[0]):
-        old, new = counts[k], out[k]
+        table = out[k]
         total, is_empty = np.float32(1e-3), True
         for i in range(N_BINS):
-            total += old[i]
-            is_empty &= old[i] == 0.0
+            total += counts[k, i]
+            is_empty &= counts[k, i] == 0.0
         if is_empty:
             for i in range(N_BINS):
-                new[i] = never
+                table[i] = never
             continue
-        _smooth(old, 1, new)
-        _smooth(new, n, scratch)
-        _smooth(scratch, n * n, new)
+        for channel in range(3):
+            step = 1 << (BITS * channel)  # from a bin to its neighbour
+            bins = counts[k] if channel == 0 else table if channel == 1 else scratch
+            smooth = scratch if channel == 1 else table
+            for i in range(step, N_BINS - step):
+                smooth[i] = quarter * (bins[i - step] + bins[i + step]) + half * bins[i]
+            # the first and the last level are their own neighbours
+            for first in range(0, N_BINS, n * step):
+                last = first + (n - 1) * step
+                for i in range(step):
+                    low, high = bins[first + i], bins[last + i]
+                    smooth[first + i] = quarter * (low + bins[first + step + i]) + half * low
+                    smooth[last + i] = quarter * (bins[last - step + i] + high) + half * high
         for i in range(N_BINS):
             # most colours are seen nowhere, and a logarithm takes a while
-            share = new[i] / total + np.float32(least)
-            new[i] = never if new[i] == 0.0 else -np.log(share)
-
-
-@njit(cache=True, nogil=True)
-def _smooth(bins: Singles, step: int, out: Singles) -> None:
-    """out (4096,): a half of each bin and a quarter of either neighbour along one channel, `step` bins away."""
-    quarter, half = np.float32(0.25), np.float32(0.5)
-    n = 1 << BITS
-    for i in range(step, N_BINS - step):
-        out[i] = quarter * (bins[i - step] + bins[i + step]) + half * bins[i]
-    # the first and the last level are their own neighbours
-    for first in range(0, N_BINS, n * step):
-        last = first + (n - 1) * step
-        for i in range(step):
-            low, high = bins[first + i], bins[last + i]
-            out[first + i] = quarter * (low + bins[first + step + i]) + half * low
-            out[last + i] = quarter * (bins[last - step + i] + high) + half * high
+            share = table[i] / total + np.float32(least)
+            table[i] = never if table[i] == 0.0 else -np.log(share)
 
 
 @njit(cache=True, nogil=True)
