@@ -14,7 +14,7 @@ import numba
 import numpy as np
 from numba.core import config
 from numba.core.caching import Cache, _CacheLocator
-from numba.core.runtime import rtsys
+from numba.core.runtime.nrt import rtsys
 
 import mocapd
 from mocapd.kernels.callees import content_of
