@@ -10,8 +10,8 @@ from mocapd.body.arrays import Articulation, SkinArrays, TriangleArrays
 from mocapd.body.pose_space import PoseSpace, upper_body
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.skeleton import PARENTS
-from mocapd.body.surface import LEGS
-from mocapd.body.surface_building import build_surface, build_whole_surface, shape_derivatives
+from mocapd.body.surface import LEGS, join_tubes
+from mocapd.body.surface_building import rough_tubes, shape_derivatives, whole_tubes
 from mocapd.types import Floats, Ints
 
 _BONES = 4  # skin weights kept per point
@@ -79,10 +79,10 @@ def build_model(stature_m: float, space: PoseSpace | None = None) -> BodyModel:
     The same object to whoever asks for the same.
     """
     space = space if space is not None else upper_body()
-    build = build_whole_surface if space.whole else build_surface
+    make_tubes = whole_tubes if space.whole else rough_tubes
     mean = BodyShape(stature_m, np.ones(space.n_shape))
-    surface = build(mean)
-    d_vertices, d_rest = shape_derivatives(stature_m, build, space.n_shape)
+    surface = join_tubes(make_tubes(mean))
+    d_vertices, d_rest = shape_derivatives(stature_m, make_tubes, space.n_shape)
     keep = surface.part != LEGS
     triangles = surface.triangles[keep]
     used = np.unique(triangles)

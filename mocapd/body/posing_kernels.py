@@ -89,7 +89,12 @@ def retract(
         k = 3 + 3 * g
         quat_exp(f * step[k], f * step[k + 1], f * step[k + 2], turn)
         quat_multiply(turn, local[j], result)
-        norm = np.sqrt((result * result).sum())
+        norm = np.sqrt(
+            result[0] * result[0]
+            + result[1] * result[1]
+            + result[2] * result[2]
+            + result[3] * result[3]
+        )
         for i in range(4):
             out_local[j, i] = result[i] / norm
 

@@ -49,14 +49,19 @@ def posed_vertices(surface: Surface, skeleton: Skeleton, pose: Pose, joints_m: F
     return out
 
 
+def tube_points(tube: Tube) -> Floats:
+    """The vertices (R * C + 2, 3) [m] of a tube with flat ends: its rings, then the middles of both ends."""
+    ends = [tube.rings_m[i].mean(0)[None] for i in (0, -1)]
+    return np.concatenate([tube.rings_m.reshape(-1, 3), *ends])
+
+
 def join_tubes(tubes: list[Tube]) -> Surface:
     """The tubes with flat ends as one surface."""
     vertices, triangles, areas, materials, parts, weights = [], [], [], [], [], []
     offset = 0
     for tube in tubes:
         R, C, _ = tube.rings_m.shape
-        ends = [tube.rings_m[i].mean(0)[None] for i in (0, -1)]
-        points = np.concatenate([tube.rings_m.reshape(-1, 3), *ends])
+        points = tube_points(tube)
         flat_weights = tube.weights.reshape(R * C, -1)
         vertices.append(points)
         weights.append(np.concatenate([flat_weights, flat_weights[:1], flat_weights[-1:]]))

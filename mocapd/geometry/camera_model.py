@@ -83,17 +83,16 @@ def perspective_jacobians(xy: Floats, depth_m: Floats) -> Floats:
 def undistort(dist: Floats, xy_distorted: Floats, iterations: int = 20) -> Floats:
     """The inverse of `distort` by fixed-point iteration; converges for the lenses of ordinary webcams."""
     k1, k2, p1, p2, k3 = dist
-    xy = xy_distorted
+    # contiguous, as pictures' grids have many points
+    x_distorted, y_distorted = (xy_distorted[..., i].copy() for i in (0, 1))
+    x, y = x_distorted, y_distorted
     for _ in range(iterations):
-        x, y = xy[..., 0], xy[..., 1]
         r2 = x * x + y * y
         radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
-        tangential = np.stack(
-            [2 * p1 * x * y + p2 * (r2 + 2 * x * x), p1 * (r2 + 2 * y * y) + 2 * p2 * x * y],
-            axis=-1,
-        )
-        xy = (xy_distorted - tangential) / radial[..., None]
-    return xy
+        across = 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
+        down = p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
+        x, y = (x_distorted - across) / radial, (y_distorted - down) / radial
+    return np.stack([x, y], axis=-1)
 
 
 def project(camera: Camera, world_m: Floats) -> Floats:

@@ -13,7 +13,8 @@ from typing import Any, Self
 import numba
 import numpy as np
 from numba.core import config
-from numba.core.caching import _CacheLocator
+from numba.core.caching import Cache, _CacheLocator
+from numba.core.runtime.nrt import rtsys
 
 import mocapd
 from mocapd.kernels.callees import content_of
@@ -22,6 +23,16 @@ _PACKAGE = Path(mocapd.__file__).resolve().parent
 _config: Any = config  # its settings carry no types
 _OLD_S = 30 * 86400.0
 _LETTERS = 16  # of the hash, in a file's name
+
+
+def _load(cache: Any, signature: Any, context: Any) -> Any:
+    """numba's `Cache.load_overload` without refreshing the context: that imports all of the compiler and scipy's linear
+    algebra, for a third of a second at each start. Compiling refreshes it, if something is not cached."""
+    rtsys.initialize(context)
+    return cache._load_overload(signature, context)
+
+
+Cache.load_overload = _load  # type: ignore[method-assign]
 
 
 class KernelLocator(_CacheLocator):

@@ -1,6 +1,6 @@
-"""The simulator's cache files: a digest, then msgpack. A file is read only if digest and key match."""
+"""The simulator's cache files: a checksum, then msgpack. A file is read only if checksum and key match."""
 
-import hashlib
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol, TypeVar
@@ -13,7 +13,7 @@ from mocapd.errors import CannotCreateError, InputError
 from mocapd.file_lock import one_at_a_time
 from mocapd.whole_file import whole_file
 
-_DIGEST_BYTES = 32
+_CHECKSUM_BYTES = 4
 _MOST_BYTES = 4 << 30  # two minutes of the largest pictures
 
 
@@ -47,9 +47,9 @@ def read_cached(path: Path, key: str, kind: type[F]) -> F | None:
     """The cached file; None if it is absent, has another key or is damaged."""
     try:
         data = memoryview(read_file(path, _MOST_BYTES))
-        if _digest(data[_DIGEST_BYTES:]) != data[:_DIGEST_BYTES]:
+        if _checksum(data[_CHECKSUM_BYTES:]) != data[:_CHECKSUM_BYTES]:
             return None
-        stored = decode_msgpack(data[_DIGEST_BYTES:], kind)
+        stored = decode_msgpack(data[_CHECKSUM_BYTES:], kind)
     except InputError:
         return None
     return stored if stored.key == key else None
@@ -61,7 +61,7 @@ def write_cached(path: Path, file: Keyed) -> None:
     try:
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         with whole_file(path) as partial, partial.open("wb") as out:
-            out.write(_digest(data))
+            out.write(_checksum(data))
             out.write(data)
     except OSError as error:
         raise CannotCreateError(
@@ -71,5 +71,6 @@ def write_cached(path: Path, file: Keyed) -> None:
         ) from None
 
 
-def _digest(data: bytes | memoryview) -> bytes:
-    return hashlib.blake2b(data, digest_size=_DIGEST_BYTES).digest()
+def _checksum(data: bytes | memoryview) -> bytes:
+    """Against damage; a film has some 40 MB, and a digest of them would take three times as long at each start."""
+    return zlib.crc32(data).to_bytes(_CHECKSUM_BYTES, "little")

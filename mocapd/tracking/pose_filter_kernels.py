@@ -102,6 +102,8 @@ def follow_bones(
         quat_exp(way[0], way[1], way[2], turn)
         out = out_xyzw[j]
         quat_multiply(turn, last, out)
-        norm = np.copysign(np.sqrt((out * out).sum()), out[3])
+        norm = np.copysign(
+            np.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2] + out[3] * out[3]), out[3]
+        )
         for i in range(4):
             out[i] /= norm

@@ -15,7 +15,12 @@ from mocapd.body.posing_kernels import difference, forward_kinematics, retract
 from mocapd.body.shape import FACTORS, WHOLE_FACTORS, BodyShape, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS, standard_skeleton
 from mocapd.body.surface import LEFT_LEG, LEGS, RIGHT_LEG, Surface
-from mocapd.body.surface_building import build_surface, build_whole_surface, shape_derivatives
+from mocapd.body.surface_building import (
+    build_surface,
+    build_whole_surface,
+    shape_derivatives,
+    whole_tubes,
+)
 from mocapd.geometry import rotations
 from mocapd.types import Floats, Ints
 from tests.body.random_poses import random_local, random_root
@@ -167,7 +172,7 @@ def test_above_the_hips_it_is_the_upper_body() -> None:
 
 
 def test_the_surface_is_linear_in_all_factors() -> None:
-    d_vertices, d_rest = shape_derivatives(STATURE_M, build_whole_surface, N)
+    d_vertices, d_rest = shape_derivatives(STATURE_M, whole_tubes, N)
     assert len(d_vertices) == len(d_rest) == N
     vertices, rest = shaped(MODEL, ODD.factors)
     np.testing.assert_allclose(vertices, build_whole_surface(ODD).vertices_m, atol=1e-9)

@@ -11,7 +11,7 @@ def test_columns_without_a_value_change_nothing(used: int) -> None:
     rng = np.random.default_rng(used)
     rows = rng.normal(size=(30, 20))
     rows[:, rng.permutation(20)[used:]] = 0.0
-    before = rng.normal(size=(20, 20))
+    before = np.cov(rng.normal(size=(20, 30)))
     got = before.copy()
     add_products(rows, got)
     np.testing.assert_allclose(got, before + rows.T @ rows, atol=1e-12)

@@ -1,14 +1,17 @@
 """One camera of a recording with pictures as a kind of source, and the recording as the origin of its cameras."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mocapd.boundary.files import is_file, user_path
 from mocapd.capture.base import Source
 from mocapd.capture.camera_link import CameraLink
 from mocapd.capture.kinds.source_kind import SourceKind
 from mocapd.capture.origin import OriginKind, Progress, split_address
-from mocapd.capture.recording.mcap_origin import McapOrigin, open_recording
 from mocapd.capture.source_request import SourceRequest
+
+if TYPE_CHECKING:
+    from mocapd.capture.recording.mcap_origin import McapOrigin
 
 _SUFFIX = ".mcap"
 
@@ -24,16 +27,23 @@ def _matches(address: str) -> bool:
     return path.suffix == _SUFFIX and is_file(path)
 
 
+def _recording(address: str) -> "McapOrigin":
+    # imported here: no start with webcams needs its libraries
+    from mocapd.capture.recording.mcap_origin import open_recording
+
+    return open_recording(_file(address))
+
+
 def _open(address: str, request: SourceRequest) -> Source:
-    return open_recording(_file(address)).source(address, request)
+    return _recording(address).source(address, request)
 
 
 def _cameras(origin: str) -> tuple[str, ...]:
-    return tuple(open_recording(_file(origin)).counts)
+    return tuple(_recording(origin).counts)
 
 
-def _open_origin(origin: str, _cache_dir: Path, _progress: Progress) -> McapOrigin:
-    return open_recording(_file(origin))
+def _open_origin(origin: str, _cache_dir: Path, _progress: Progress) -> "McapOrigin":
+    return _recording(origin)
 
 
 RECORDING = SourceKind(

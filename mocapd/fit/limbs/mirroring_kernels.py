@@ -31,7 +31,7 @@ def shortest_turn(a: Array, b: Array, out: Array) -> None:
             out[0], out[1], out[2], out[3] = 0.0, a[2], -a[1], 0.0
         else:
             out[0], out[1], out[2], out[3] = -a[2], 0.0, a[0], 0.0
-    length = np.sqrt((out * out).sum())
+    length = np.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2] + out[3] * out[3])
     for i in range(4):
         out[i] /= length
 
@@ -51,7 +51,9 @@ def mirrored_in_depth(
     for i in range(3):
         ray[i] = joints_m[1, i] - eye_m[i]
         bones[0, i], bones[1, i] = joints_m[1, i] - joints_m[0, i], joints_m[2, i] - joints_m[1, i]
-    ray /= np.sqrt((ray * ray).sum())
+    length = np.sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2])
+    for i in range(3):
+        ray[i] /= length
     for k in range(2):
         _mirror(bones[k], ray, flipped[k])
     for n in range(3):

@@ -79,7 +79,9 @@ def _of_frame(x: Array, y: Array, z: Array, out: Array) -> None:
         out[0], out[1], out[2], out[3] = z[0] + x[2], y[2] + z[1], z2, x[1] - y[0]
     else:
         out[0], out[1], out[2], out[3] = y[2] - z[1], z[0] - x[2], x[1] - y[0], w2
-    length = np.copysign(np.sqrt((out * out).sum()), out[3])
+    length = np.copysign(
+        np.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2] + out[3] * out[3]), out[3]
+    )
     for i in range(4):
         out[i] /= length
 

@@ -146,5 +146,7 @@ def add_triangle_rows(
             add_products(rows[:n_rows], square)
             n_rows = 0
     add_products(rows[:n_rows], square)
-    H += square[:P, :P]
-    b += square[:P, P]
+    for p in range(P):
+        b[p] += square[p, P]
+        for q in range(P):
+            H[p, q] += square[p, q]

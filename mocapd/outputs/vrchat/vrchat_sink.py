@@ -4,7 +4,7 @@ import logging
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from msgspec import Meta
 
@@ -20,10 +20,12 @@ from mocapd.outputs.vrchat import tracker_bundle
 from mocapd.outputs.vrchat.head_alignment import HeadAlignment
 from mocapd.outputs.vrchat.tracker_bundle import TrackerBundle
 from mocapd.outputs.vrchat.unity_space import cos_sin, unity_euler_deg, unity_position
-from mocapd.outputs.vrchat.vrchat_finder import VRChatFinder
 from mocapd.outputs.vrchat.vrchat_link import KEY, VRChatLink
 from mocapd.outputs.wire import Joint, SkeletonFrame, Vector
 from mocapd.outputs.worn_trackers import BodyPart, WornTracker, trackers_of
+
+if TYPE_CHECKING:
+    from mocapd.outputs.vrchat.vrchat_finder import VRChatFinder
 
 AUTO = "auto"
 HEAD_ON = "neck"  # the bone whose confidence is that of the head's position
@@ -68,10 +70,10 @@ class VRChatSink:
 
     name = "vrchat"
 
-    def __init__(self, params: Params, finder: VRChatFinder | None = None) -> None:
+    def __init__(self, params: Params, finder: "VRChatFinder | None" = None) -> None:
         """finder: used where the destination is `auto`."""
         self._params = params
-        self._finder = (finder or VRChatFinder()) if params.destination == AUTO else None
+        self._finder = (finder or _new_finder()) if params.destination == AUTO else None
         self._link = VRChatLink()
         self._trackers = ConfidentTrackers(trackers_of(params.trackers))
         self._alignment = HeadAlignment(math.radians(params.yaw_deg))
@@ -165,3 +167,10 @@ def warnings(params: Params) -> tuple[str, ...]:
         'vrchat.destination = "auto": whoever announces a VRChat in the local network is sent where the'
         " person is, unencrypted; give VRChat's address where you do not trust the network",
     )
+
+
+def _new_finder() -> "VRChatFinder":
+    # imported here: its HTTP client comes with TLS, which other starts do without
+    from mocapd.outputs.vrchat.vrchat_finder import VRChatFinder
+
+    return VRChatFinder()

@@ -99,12 +99,14 @@ def stroke_colours(image: Bytes, strokes: Bytes) -> list[Floats]:
         raise InputError(f"strokes {strokes.shape} on an image {image.shape[:2]}")
     colours: list[Floats] = []
     for colour in range(1, COLOURS + 1):
-        mask = strokes == colour
-        if not mask.any():
+        left, top, width, height = cv2.boundingRect((strokes == colour).view(np.uint8))
+        if not width:
             colours.append(np.empty((0, 3)))
             continue
-        count, components = cv2.connectedComponents(mask.astype(np.uint8))
-        values, part_of = image[mask][:, ::-1].astype(float) / 255.0, components[mask]
+        box = np.s_[top : top + height, left : left + width]
+        mask = strokes[box] == colour
+        count, components = cv2.connectedComponents(mask.view(np.uint8))
+        values, part_of = image[box][mask][:, ::-1].astype(float) / 255.0, components[mask]
         parts = [_trim(values[part_of == part]) for part in range(1, count)]
         colours.append(np.concatenate(parts))
     return colours
@@ -126,10 +128,13 @@ def _trim(values: Floats) -> Floats:
         return values
     core = round(_CORE_FRACTION * len(values))
     distance2 = ((values - np.median(values, axis=0)) ** 2).sum(axis=1)
+    noise = np.eye(3) * _PIXEL_NOISE_VARIANCE
     for _ in range(_CONCENTRATION_STEPS):
         inner = values[np.argsort(distance2, kind="stable")[:core]]
-        covariance = np.cov(inner.T) * _CORE_TO_FULL_VARIANCE + np.eye(3) * _PIXEL_NOISE_VARIANCE
-        centred = values - inner.mean(axis=0)
+        middle = inner.mean(axis=0)
+        off = inner - middle
+        covariance = off.T @ off * (_CORE_TO_FULL_VARIANCE / (core - 1)) + noise
+        centred = values - middle
         distance2 = (centred * np.linalg.solve(covariance, centred.T).T).sum(axis=1)
     inliers: Floats = values[distance2 < _CHI2_3_AT_0_999]
     return inliers

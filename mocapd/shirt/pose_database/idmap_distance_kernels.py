@@ -83,7 +83,8 @@ def from_packed(packed: Bytes, distances: Singles) -> float:
 def sort_by_colour(ids: Bytes, xs: Singles, ys: Singles, start: NDArray[np.int64]) -> None:
     """Coordinates of the coloured pixels, colour by colour: those of c at start[c] : start[c + 1]."""
     h, w = ids.shape
-    start[:] = 0
+    for c in range(start.shape[0]):
+        start[c] = 0
     for y in range(h):
         for x in range(w):
             if ids[y, x] != 0:
@@ -115,7 +116,8 @@ def to_points(
         # slices that are indexed from 0 let the compiler run the inner loop as vectors
         x, y = xs[start[c] : start[c + 1]], ys[start[c] : start[c + 1]]
         least = scratch[: x.shape[0]]
-        least[:] = np.float32(MISSING)
+        for i in range(least.shape[0]):
+            least[i] = np.float32(MISSING)
         for k in range(other_start[c], other_start[c + 1]):
             px, py = other_xs[k], other_ys[k]
             for i in range(least.shape[0]):
@@ -160,8 +162,9 @@ def nearest_in_order(
 ) -> None:
     """See `nearest_exact`; candidates in the order of one_way (C,), their distances to the query."""
     k = best.shape[0]
-    best[:] = -1
-    distance[:] = np.inf
+    for i in range(k):
+        best[i] = -1
+        distance[i] = np.inf
     xs, ys = np.empty(SIZE * SIZE, np.float32), np.empty(SIZE * SIZE, np.float32)
     other_xs, other_ys = np.empty(SIZE * SIZE, np.float32), np.empty(SIZE * SIZE, np.float32)
     start, other_start = np.empty(N_IDS + 1, np.int64), np.empty(N_IDS + 1, np.int64)

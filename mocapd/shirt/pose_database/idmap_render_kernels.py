@@ -54,17 +54,24 @@ def render_poses(
     triangle_at = np.empty((CANVAS, CANVAS), np.int32)
     ids = np.empty((CANVAS, CANVAS), np.uint8)
     small = np.empty((SIZE, SIZE), np.uint8)
-    K = np.array([[focal_px, 0.0, 0.0], [0.0, focal_px, 0.0], [0.0, 0.0, 1.0]])
-    identity, no_lens, zero = np.eye(3), np.zeros(5), np.zeros(2)
+    # arrays by numbers, here and below: numba takes seconds to compile an array's assignment
+    K, identity = np.zeros((3, 3)), np.zeros((3, 3))
+    for i in range(3):
+        K[i, i] = focal_px if i < 2 else 1.0
+        identity[i, i] = 1.0
+    no_lens, zero = np.zeros(5), np.zeros(2)
+    facing, hips = np.empty(4), np.empty(4)
     t, root = np.zeros(3), np.zeros(3)
     # without their names, as the tracker calls that kernel: each form is compiled for itself
     posed: Any = (rest, R, joints, turned)
     camera: Any = (identity, t, K, no_lens)
     for n in range(local_xyzw.shape[0]):
-        for j in range(J):  # by numbers: numba takes five seconds to compile an array's assignment
+        for j in range(J):
             for i in range(4):
                 local[j, i] = local_xyzw[n, j, i]
-        quat_multiply(camera_from_root_xyzw[n].astype(np.float64), local[0].copy(), local[0])
+        for i in range(4):
+            facing[i], hips[i] = camera_from_root_xyzw[n, i], local_xyzw[n, 0, i]
+        quat_multiply(facing, hips, local[0])
         forward_kinematics(parents, rest, root, local, R, joints, turned)
         for i in range(3):  # joint 3 is the upper chest
             t[i] = -0.5 * (joints[0, i] + joints[3, i])
@@ -83,7 +90,9 @@ def render_poses(
         rasterise(xy, depth, triangles, zbuffer, triangle_at)
         label_triangles(triangle_at, colour, ids)
         cx, cy, side = crop_window(ids)
-        small[:] = 0
+        for y in range(SIZE):
+            for x in range(SIZE):
+                small[y, x] = 0
         if side > 0.0:
             resample(ids, cx, cy, side, small)
         pack(small, packed_maps[n])

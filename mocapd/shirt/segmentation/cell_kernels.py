@@ -83,12 +83,12 @@ def colour_distances(
     for y in range(h4):
         for x in range(w4):
             for k in range(10):
+                out[y, x, k] = FAR
                 if held[y, x] >> k & 1:
                     box[k, 0] = min(box[k, 0], x)
                     box[k, 1] = max(box[k, 1], x)
                     box[k, 2] = min(box[k, 2], y)
                     box[k, 3] = y
-    out[:] = FAR
     buffer = np.empty((h4, w4), np.int32)
     for k in range(10):
         if box[k, 1] < 0:
@@ -199,8 +199,9 @@ def classify(
                     # the penalties are the same for every colour, so they lower the threshold and
                     # cannot change the winner
                     limit[n] = top - behind if still else top
-            best[:] = top
-            winner[:] = 0
+            for n in range(_LANES):
+                best[n] = top
+                winner[n] = 0
             for k in range(10):
                 d = distance[cy, cx, k]
                 if d == FAR or step * d >= top:

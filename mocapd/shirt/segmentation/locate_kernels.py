@@ -45,7 +45,8 @@ def find_shirt(
     total = np.zeros((gh + 1, gw + 1, 10), np.int32)
     row = np.zeros(10, np.int32)
     for gy in range(gh):
-        row[:] = 0
+        for k in range(10):
+            row[k] = 0
         for gx in range(gw):
             for y in range(gy * CELL, (gy + 1) * CELL):
                 for x in range(gx * CELL, (gx + 1) * CELL):

@@ -63,8 +63,7 @@ class Appearance:
         self._params = params
         self._counts = np.zeros((1 + len(Region) + len(Band), N_BINS), np.float32)
         self._table = np.zeros_like(self._counts)
-        n = 1 << BITS
-        self._scratch = np.empty((n, n, n), np.float32)
+        self._scratch = np.empty(N_BINS, np.float32)
         self.reset()
 
     def reset(self) -> None:

@@ -67,44 +67,37 @@ def count_colours(
 @njit(cache=True, nogil=True)
 def log_table(counts: Singles, least: float, scratch: Singles, out: Singles) -> None:
     """out (8,4096): minus the logarithm of each class's share of its own pixels, smoothed over neighbouring bins (1 2 1)
-    in all three channels. scratch (16,16,16); least: the share of a colour that was never seen."""
+    in all three channels. scratch (4096,); least: the share of a colour that was never seen."""
     n = 1 << BITS
+    quarter, half = np.float32(0.25), np.float32(0.5)
     never = -np.log(np.float32(0.0) + np.float32(least))
-    for k in range(len(counts)):
-        if not counts[k].any():
-            out[k] = never
-            continue
-        total = np.float32(1e-3)
+    for k in range(counts.shape[0]):
+        table = out[k]
+        total, is_empty = np.float32(1e-3), True
         for i in range(N_BINS):
             total += counts[k, i]
-        old, new = counts[k].reshape(n, n, n), out[k].reshape(n, n, n)
-        for b in range(n):
-            for g in range(n):
-                row = old[b, g]
-                _smooth(row[:-2], row[1:-1], row[2:], new[b, g, 1:-1])
-                _smooth(row[:1], row[:1], row[1:2], new[b, g, :1])
-                _smooth(row[-2:-1], row[-1:], row[-1:], new[b, g, -1:])
-        for b in range(n):
-            for g in range(n):
-                below, above = max(g - 1, 0), min(g + 1, n - 1)
-                _smooth(new[b, below], new[b, g], new[b, above], scratch[b, g])
-        layers = scratch.reshape(n, n * n)
-        for b in range(n):
-            below, above = max(b - 1, 0), min(b + 1, n - 1)
-            smooth = out[k, b * n * n : (b + 1) * n * n]
-            _smooth(layers[below], layers[b], layers[above], smooth)
-            for i in range(n * n):
-                # most colours are seen nowhere, and a logarithm takes a while
-                share = smooth[i] / total + np.float32(least)
-                smooth[i] = never if smooth[i] == 0.0 else -np.log(share)
-
-
-@njit(cache=True, nogil=True, inline="always")
-def _smooth(before: Singles, here: Singles, after: Singles, out: Singles) -> None:
-    """out (n,): a half of what is here and a quarter of either neighbour."""
-    quarter, half = np.float32(0.25), np.float32(0.5)
-    for i in range(out.shape[0]):
-        out[i] = quarter * (before[i] + after[i]) + half * here[i]
+            is_empty &= counts[k, i] == 0.0
+        if is_empty:
+            for i in range(N_BINS):
+                table[i] = never
+            continue
+        for channel in range(3):
+            step = 1 << (BITS * channel)  # from a bin to its neighbour
+            bins = counts[k] if channel == 0 else table if channel == 1 else scratch
+            smooth = scratch if channel == 1 else table
+            for i in range(step, N_BINS - step):
+                smooth[i] = quarter * (bins[i - step] + bins[i + step]) + half * bins[i]
+            # the first and the last level are their own neighbours
+            for first in range(0, N_BINS, n * step):
+                last = first + (n - 1) * step
+                for i in range(step):
+                    low, high = bins[first + i], bins[last + i]
+                    smooth[first + i] = quarter * (low + bins[first + step + i]) + half * low
+                    smooth[last + i] = quarter * (bins[last - step + i] + high) + half * high
+        for i in range(N_BINS):
+            # most colours are seen nowhere, and a logarithm takes a while
+            share = table[i] / total + np.float32(least)
+            table[i] = never if table[i] == 0.0 else -np.log(share)
 
 
 @njit(cache=True, nogil=True)

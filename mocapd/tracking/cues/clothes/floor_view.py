@@ -3,7 +3,8 @@
 import numpy as np
 
 from mocapd.fit.idmap_renderer import Roi, work_size
-from mocapd.geometry.camera_model import centre, rays
+from mocapd.fit.work_rays import work_rays_in_world
+from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.clothes.floor_view_kernels import near_on_floor
 from mocapd.types import Bytes, Camera, Floats
 
@@ -16,9 +17,7 @@ class FloorView:
 
     def __init__(self, camera: Camera, image_scale: int) -> None:
         w, h = work_size(camera, image_scale)
-        y, x = np.mgrid[:h, :w]
-        pixels = (np.stack([x, y], axis=-1).reshape(-1, 2) + 0.5) * image_scale - 0.5
-        along = rays(camera, pixels)[1]
+        along = work_rays_in_world(camera, image_scale)[:h, :w].reshape(-1, 3)
         eye = centre(camera)
         down = np.minimum(along[:, 1], -1e-6)
         met = eye + along * (-eye[1] / down)[:, None]

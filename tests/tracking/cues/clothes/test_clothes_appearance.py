@@ -190,7 +190,7 @@ def test_the_table_is_the_smoothed_share_of_each_class() -> None:
     n = 1 << BITS
     counts = rng.exponential(1.0, (N_CLASSES, N_BINS)).astype(np.float32)
     out = np.empty_like(counts)
-    log_table(counts, 2e-5, np.empty((n, n, n), np.float32), out)
+    log_table(counts, 2e-5, np.empty(N_BINS, np.float32), out)
     for k in range(N_CLASSES):
         smooth = counts[k].reshape(n, n, n).astype(float)
         for axis in range(3):
