@@ -100,7 +100,7 @@ def camera_message(
         size_px=camera.size_px,
         rate_hz=status.fps_hz,
         frames=status.frames,
-        lost_frames=metrics.counts.lost + status.torn,
+        lost_frames=max(metrics.counts.lost, status.torn),  # a torn frame is a gap, too
         reopened=status.reopens,
         mounting=mounting.value,
     )

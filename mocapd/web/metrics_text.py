@@ -107,7 +107,8 @@ def _cameras(snapshot: Snapshot) -> Families:
         up.add_metric(label, float(delivers(status)))
         rate.add_metric(label, status.fps_hz)
         frames.add_metric(label, status.frames)
-        lost.add_metric(label, status.torn + (counted.counts.lost if counted else 0))
+        # a torn frame is a gap in the numbers, too
+        lost.add_metric(label, max(status.torn, counted.counts.lost if counted else 0))
         reopened.add_metric(label, status.reopens)
         bumped.add_metric(label, float(snapshot.mountings.get(name) is Mounting.BUMPED))
         swapped.add_metric(label, float(snapshot.mountings.get(name) is Mounting.SWAPPED))
