@@ -4,6 +4,8 @@ import { element } from "./setup.js";
 
 const MARGIN_M = 0.5;
 const LEGEND_PX = 60; // below the plan
+const NAME_PX = 22; // above and below the plan, for a camera's name
+const DOT_PX = 7;
 
 /** The room from above, players facing down the page: cameras with what they see, places of the board. */
 export class Plan {
@@ -40,7 +42,7 @@ export class Plan {
     const high = [0, 2].map((axis) => Math.max(...points.map((point) => point[axis])) + MARGIN_M);
     const { width } = this.canvas;
     const height = this.canvas.height - LEGEND_PX;
-    const scale = Math.min(width / (high[0] - low[0]), height / (high[1] - low[1]));
+    const scale = Math.min(width / (high[0] - low[0]), (height - 2 * NAME_PX) / (high[1] - low[1]));
     // a player at rest looks along +z, its left is +x: with +z down the page, +x is to the right
     const at = (x, z) => [
       width / 2 + (x - (low[0] + high[0]) / 2) * scale,
@@ -60,11 +62,9 @@ export class Plan {
     for (const camera of plan.cameras) this.camera(context, camera, at, scale, colour("--accent"));
     context.fillStyle = colour("--text");
     context.font = "600 18px system-ui, sans-serif";
-    for (const { id, at_m } of plan.cameras) {
-      const [x, y] = at(at_m[0], at_m[2]);
+    for (const { id, at_m, towards } of plan.cameras) {
       const name = names[id] ?? id;
-      const across = context.measureText(name).width;
-      context.fillText(name, Math.min(Math.max(4, x + 10), width - across - 4), Math.max(20, y - 10));
+      context.fillText(name, ...nameAt(at(at_m[0], at_m[2]), towards, context.measureText(name).width, width));
     }
     context.fillText("0", ...at(0, 0).map((pixel) => pixel + 6));
     this.legend(context, colour, scale, plan);
@@ -136,7 +136,7 @@ export class Plan {
       context.lineTo(x + scale * Math.cos(angle + side), y + scale * Math.sin(angle + side));
     }
     context.stroke();
-    dot(context, [x, y], 7);
+    dot(context, [x, y], DOT_PX);
   }
 }
 
@@ -144,6 +144,14 @@ function dot(context, [x, y], radius) {
   context.beginPath();
   context.arc(x, y, radius, 0, 2 * Math.PI);
   context.fill();
+}
+
+/** Where a camera's name begins [px]: behind the camera, out of what it sees. */
+function nameAt([x, y], [right, , down], across, width) {
+  const length = Math.hypot(right, down) || 1;
+  const left = x - (right / length) * (across / 2) - across / 2;
+  const baseline = down > 0 ? y - DOT_PX - 5 : y + DOT_PX + 18;
+  return [Math.min(Math.max(4, left), width - across - 4), baseline];
 }
 
 /** The figures of the rig, in words. */
