@@ -174,6 +174,8 @@ def test_the_plan_has_a_scale_and_says_how_large_the_play_area_is(shown: Shown) 
     caption = shown.page.locator("figure:has(canvas.plan) figcaption")
     expect(caption).to_contain_text("You are seen whole on")
     expect(caption).to_contain_text("cameras 3.1 m apart")
+    legend = shown.page.locator(".plan-legend li")
+    expect(legend).to_have_text(["camera", "the board was here", "two cameras see you whole"])
 
 
 def test_a_cameras_name_on_the_plan_is_not_in_what_it_sees(shown: Shown) -> None:

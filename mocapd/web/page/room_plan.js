@@ -3,19 +3,20 @@
 import { element } from "./setup.js";
 
 const MARGIN_M = 0.5;
-const LEGEND_PX = 60; // below the plan
+const SCALE_PX = 30; // below the plan
 const NAME_PX = 22; // above and below the plan, for a camera's name
 const DOT_PX = 7;
 
 /** The room from above, players facing down the page: cameras with what they see, places of the board. */
 export class Plan {
   constructor() {
-    this.canvas = element("canvas", { width: 640, height: 480, role: "img", class: "plan" });
+    this.canvas = element("canvas", { width: 640, height: 450, role: "img", class: "plan" });
     this.canvas.style.width = "100%";
     this.root = element(
       "figure",
       { class: "camera", hidden: true },
       this.canvas,
+      (this.legend = element("ul", { class: "plan-legend" })),
       (this.caption = element("figcaption", {})),
     );
     this.told = "";
@@ -41,7 +42,7 @@ export class Plan {
     const low = [0, 2].map((axis) => Math.min(...points.map((point) => point[axis])) - MARGIN_M);
     const high = [0, 2].map((axis) => Math.max(...points.map((point) => point[axis])) + MARGIN_M);
     const { width } = this.canvas;
-    const height = this.canvas.height - LEGEND_PX;
+    const height = this.canvas.height - SCALE_PX;
     const scale = Math.min(width / (high[0] - low[0]), (height - 2 * NAME_PX) / (high[1] - low[1]));
     // a player at rest looks along +z, its left is +x: with +z down the page, +x is to the right
     const at = (x, z) => [
@@ -67,39 +68,38 @@ export class Plan {
       context.fillText(name, ...nameAt(at(at_m[0], at_m[2]), towards, context.measureText(name).width, width));
     }
     context.fillText("0", ...at(0, 0).map((pixel) => pixel + 6));
-    this.legend(context, colour, scale, plan);
+    this.scaleBar(context, colour, scale);
+    this.drawLegend(plan);
   }
 
-  /** A metre, and what the colours mean. */
-  legend(context, colour, scale, plan) {
-    const [top, left] = [this.canvas.height - LEGEND_PX, 16];
+  /** A metre. */
+  scaleBar(context, colour, scale) {
+    const [top, left] = [this.canvas.height - SCALE_PX, 16];
     context.fillStyle = colour("--panel");
-    context.fillRect(0, top, this.canvas.width, LEGEND_PX);
+    context.fillRect(0, top, this.canvas.width, SCALE_PX);
     context.strokeStyle = context.fillStyle = colour("--text");
     context.lineWidth = 2;
     context.beginPath();
-    context.moveTo(left, top + 14);
-    context.lineTo(left, top + 26);
-    context.moveTo(left, top + 20);
-    context.lineTo(left + scale, top + 20);
-    context.moveTo(left + scale, top + 14);
-    context.lineTo(left + scale, top + 26);
+    context.moveTo(left, top + 10);
+    context.lineTo(left, top + 22);
+    context.moveTo(left, top + 16);
+    context.lineTo(left + scale, top + 16);
+    context.moveTo(left + scale, top + 10);
+    context.lineTo(left + scale, top + 22);
     context.stroke();
     context.font = "600 16px system-ui, sans-serif";
-    context.fillText("1 m", left + scale + 10, top + 26);
-    context.font = "15px system-ui, sans-serif";
-    let x = left;
+    context.fillText("1 m", left + scale + 10, top + 22);
+  }
+
+  /** What the colours mean. */
+  drawLegend(plan) {
     const whole = plan.cameras.length > 1 ? "two cameras see you whole" : "the camera sees you whole";
-    for (const [name, text] of [["--accent", "camera"], ["--text-soft", "the board was here"], ["--good-soft", whole]]) {
-      context.fillStyle = colour(name);
-      context.fillRect(x, top + 38, 16, 14);
-      context.strokeStyle = colour("--text-soft");
-      context.lineWidth = 1;
-      context.strokeRect(x, top + 38, 16, 14);
-      context.fillStyle = colour("--text");
-      context.fillText(text, x + 24, top + 51);
-      x += 48 + context.measureText(text).width;
-    }
+    const colours = [["of-camera", "camera"]];
+    if (plan.boards_m.length) colours.push(["of-board", "the board was here"]);
+    if (plan.seen_m?.length) colours.push(["of-floor", whole]);
+    this.legend.replaceChildren(
+      ...colours.map(([look, text]) => element("li", {}, element("span", { class: `swatch ${look}` }), text)),
+    );
   }
 
   grid(context, at, low, high, colour) {
