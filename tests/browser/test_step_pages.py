@@ -13,7 +13,7 @@ from mocapd.web.server import WebServer
 from mocapd.wizard.step import StepState
 from mocapd.wizard.step_names import StepName
 from tests.browser.conftest import FOR_THE_DOCS, problems_of
-from tests.browser.step_views import PAGES, SAVED, ShownWizard, check, lens
+from tests.browser.step_views import PAGES, SAVED, ShownWizard, body, check, lens
 from tests.web.tiny_host import TinyHost
 
 WAIT_MS = 120_000
@@ -125,6 +125,12 @@ def test_instruction_and_its_one_button_are_in_sight_at_every_size(
         shown.page.evaluate("scrollTo(0, 0)")
         shown.page.wait_for_timeout(200)
         shown.page.screenshot(path=pictures / f"step-{name}-{size_name}.png", full_page=True)
+
+
+@pytest.mark.parametrize("name", [*PAGES, "body_done"])
+def test_one_button_at_most_is_the_one_to_press(shown: Shown, name: str) -> None:
+    shown.show(*(PAGES | {"body_done": (StepName.BODY, body(measured=True))})[name])
+    assert shown.page.locator(".step-buttons .primary:visible").count() <= 1
 
 
 def test_back_leads_to_the_step_before(shown: Shown) -> None:

@@ -98,7 +98,7 @@ export class Plan {
     if (plan.boards_m.length) colours.push(["of-board", "the board was here"]);
     if (plan.seen_m?.length) colours.push(["of-floor", whole]);
     this.legend.replaceChildren(
-      ...colours.map(([look, text]) => element("li", {}, element("span", { class: `swatch ${look}` }), text)),
+      ...colours.map(([look, text]) => element("li", {}, element("span", { class: `plan-key ${look}` }), text)),
     );
   }
 
@@ -157,7 +157,9 @@ function nameAt([x, y], [right, , down], across, width) {
 /** The figures of the rig, in words. */
 function summary(plan) {
   if (!plan.size_m) return "";
-  const parts = [`You are seen whole on ${plan.size_m[0].toFixed(1)} × ${plan.size_m[1].toFixed(1)} m of the floor (green)`];
+  const [across, along] = plan.size_m.map((metres) => metres.toFixed(1));
+  const seen = plan.seen_m.length ? `on ${across} × ${along} m of the floor (green)` : "nowhere";
+  const parts = [`You are seen whole ${seen}`];
   if (plan.cameras.length > 1) parts.push(`cameras ${plan.baseline_m.toFixed(1)} m apart`);
   if (plan.angle_deg !== null && plan.angle_deg !== undefined) parts.push(`${plan.angle_deg} degrees`);
   return `${parts.join(", ")}.`;

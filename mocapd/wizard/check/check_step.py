@@ -230,7 +230,7 @@ class CheckStep:
         draft, statuses = self._context.draft, self._context.statuses()
         counts, cameras = self._tracking.counts(), {one.id: one for one in draft.cameras}
         slowness = self._tracking.metrics().slowness
-        slow = None if slowness is None else (slowness.what, slowness.fix)
+        slow = None if slowness is None else ("too slow", slowness.fix)  # why: see _slowness
         self._verdicts = tuple(
             camera_verdict(
                 camera.name,
