@@ -129,7 +129,7 @@ def test_instruction_and_its_one_button_are_in_sight_at_every_size(
 
 @pytest.mark.parametrize("name", [*PAGES, "body_done"])
 def test_one_button_at_most_is_the_one_to_press(shown: Shown, name: str) -> None:
-    shown.show(*(PAGES | {"body_done": (StepName.BODY, body(measured=True))})[name])
+    shown.show(*{**PAGES, "body_done": (StepName.BODY, body(measured=True))}[name])
     assert shown.page.locator(".step-buttons .primary:visible").count() <= 1
 
 

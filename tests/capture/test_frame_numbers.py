@@ -28,7 +28,7 @@ def test_frames_that_the_camera_lost_are_counted(share: float) -> None:
     arrives = np.random.default_rng(1).random(600) >= share
     arrives[:20] = True  # the period is known by then
     arrives[-1] = True
-    stamps_ns = [k * PERIOD_NS for k in np.flatnonzero(arrives)]
+    stamps_ns = [k * PERIOD_NS for k in np.flatnonzero(arrives).tolist()]
     assert lost_of(stamps_ns) == pytest.approx(np.count_nonzero(~arrives), rel=0.05)
 
 

@@ -160,7 +160,7 @@ class DroppingCamera(StubbornCamera):
 def test_a_picture_that_never_came_is_a_gap_in_the_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     numbers = [*range(20), 22, 23]  # the driver's count of them is not to be had from OpenCV
     camera = DroppingCamera(list(numbers))
-    monkeypatch.setattr(v4l2.cv2, "VideoCapture", lambda *_: camera)
+    monkeypatch.setattr(cv2, "VideoCapture", lambda *_: camera)
     monkeypatch.setattr(v4l2, "opened_node", lambda _: nullcontext(-1))
     monkeypatch.setattr(v4l2, "check_usable", lambda *_: None)
     monkeypatch.setattr(v4l2, "monotonic_ns", lambda: round(1e6 * (camera.now_ms + 20.0)))

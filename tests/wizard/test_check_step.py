@@ -193,7 +193,7 @@ def judged(tmp_path: Path, slowness: Slowness | None) -> list[Problem]:
     for _ in range(200):
         step.tick(context.now_ns)
         context.now_ns += TICK_NS
-    assert step.view().details["phase"] == "judged"  # type: ignore[comparison-overlap]
+    assert step.view().details["phase"] == "judged"
     return list(step.view().problems)
 
 
