@@ -63,6 +63,15 @@ class CameraCounts:
     late: int
     lost: int
 
+    def since(self, before: "CameraCounts") -> "CameraCounts":
+        """The frames after an earlier count."""
+        return CameraCounts(
+            self.received - before.received,
+            self.used - before.used,
+            self.late - before.late,
+            self.lost - before.lost,
+        )
+
 
 class Bundler:
     """Turns frames into frame sets: times strictly increase, and no frame is used twice."""

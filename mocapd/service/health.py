@@ -82,6 +82,12 @@ def effort_text(effort: str) -> str:
     return "" if trouble is None else " -- ".join(trouble)
 
 
+def lost_frames(metrics: CameraMetrics | None, status: CaptureStatus) -> int:
+    """Frames lost on the way, or damaged. A damaged one is a gap in the numbers, too, but before a whole frame follows it
+    is counted by its source alone."""
+    return max(0 if metrics is None else metrics.counts.lost, status.torn)
+
+
 def camera_message(
     instance: str,
     camera: CameraInput,
@@ -100,7 +106,7 @@ def camera_message(
         size_px=camera.size_px,
         rate_hz=status.fps_hz,
         frames=status.frames,
-        lost_frames=metrics.counts.lost + status.torn,
+        lost_frames=lost_frames(metrics, status),
         reopened=status.reopens,
         mounting=mounting.value,
     )

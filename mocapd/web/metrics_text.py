@@ -16,6 +16,7 @@ from prometheus_client.registry import Collector
 import mocapd
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.pipeline.latency_histogram import BOUNDS_MS, LatencyCounts
+from mocapd.service.health import lost_frames
 from mocapd.service.readiness import READINESS_STATES, delivers, readiness_of
 from mocapd.service.service import Snapshot
 from mocapd.tracking.effort import Effort
@@ -107,7 +108,7 @@ def _cameras(snapshot: Snapshot) -> Families:
         up.add_metric(label, float(delivers(status)))
         rate.add_metric(label, status.fps_hz)
         frames.add_metric(label, status.frames)
-        lost.add_metric(label, status.torn + (counted.counts.lost if counted else 0))
+        lost.add_metric(label, lost_frames(counted, status))
         reopened.add_metric(label, status.reopens)
         bumped.add_metric(label, float(snapshot.mountings.get(name) is Mounting.BUMPED))
         swapped.add_metric(label, float(snapshot.mountings.get(name) is Mounting.SWAPPED))

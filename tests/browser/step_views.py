@@ -120,14 +120,16 @@ def colour() -> StepView:
     )  # fmt: skip
 
 
-def body() -> StepView:
+def body(measured: bool = False) -> StepView:
     return StepView(
-        StepState.WAITING,
-        "Press “Measure”, stand with both arms out, then bend and stretch your elbows.",
-        0.3,
+        StepState.DONE if measured else StepState.WAITING,
+        "Compare the lines with your body: measure again if they are off, or go on."
+        if measured
+        else "Press “Measure”, stand with both arms out, then bend and stretch your elbows.",
+        1.0 if measured else 0.3,
         details={
             "stature_m": 1.75, "has_shirt": True, "measuring": False, "can_measure": True, "why_not": "",
-            "measured": False, "lengths_cm": {"upper arm": 29.0}, "usual_cm": {"upper arm": 29.0}, "factors": {},
+            "measured": measured, "lengths_cm": {"upper arm": 29.0}, "usual_cm": {"upper arm": 29.0}, "factors": {},
             "pictures": [], "match": None,
         },
     )  # fmt: skip

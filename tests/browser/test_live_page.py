@@ -61,6 +61,7 @@ def test_a_machine_that_is_too_slow_is_said_with_what_helps(
         expect(told).to_contain_text("other programs use 60 %")
         expect(told).to_contain_text("close other programs")
         expect(told).to_have_class("state failed")
+        assert page.locator("#live").inner_text().count("close other programs") == 1
         page.screenshot(path=pictures / "live-slow.png")
     finally:
         host.slowness = None

@@ -195,6 +195,8 @@ def setup(served: Served, page: Page, pictures: Path, cache_home: Path) -> Setup
     draw(page, "cam1", by_hand)
     expect(page.locator("#sentence")).not_to_contain_text("cam1", timeout=STEP_MS)
     done(page)
+    for one in page.locator("button.colour").all():
+        assert one.evaluate("one => one.scrollWidth <= one.clientWidth"), "its key fits into it"
     finished("colour")
     shoot("colour")
     page.check("#as-seen")

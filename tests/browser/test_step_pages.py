@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, ViewportSize, expect
 
@@ -12,7 +13,7 @@ from mocapd.web.server import WebServer
 from mocapd.wizard.step import StepState
 from mocapd.wizard.step_names import StepName
 from tests.browser.conftest import FOR_THE_DOCS, problems_of
-from tests.browser.step_views import PAGES, SAVED, ShownWizard, check, lens
+from tests.browser.step_views import PAGES, SAVED, ShownWizard, body, check, lens
 from tests.web.tiny_host import TinyHost
 
 WAIT_MS = 120_000
@@ -38,6 +39,27 @@ LISTEN = """() => {
     Object.defineProperty(window, "speechSynthesis", { value: voice });
     const start = OscillatorNode.prototype.start;
     OscillatorNode.prototype.start = function (at) { window.heard.tones += 1; start.call(this, at); };
+}"""
+
+# Eight cameras around a room, each turned to its middle: where the plan writes their names, and where they stand [px].
+NAMED = """async () => {
+    const { Plan } = await import(new URL("page/room_plan.js", location.href.split("?")[0]).href);
+    const cameras = [0, 1, 2, 3, 4, 5, 6, 7].map((index) => {
+        const angle = (index * Math.PI) / 4;
+        const towards = [Math.cos(angle), 0, Math.sin(angle)];
+        const at_m = [-3 * towards[0], 1.5, -3 * towards[2]];
+        return { id: `camera ${index}`, at_m, towards, half_angle_rad: 0.55, angle };
+    });
+    const plan = new Plan();
+    document.body.append(plan.root);
+    const context = plan.canvas.getContext("2d");
+    const texts = {};
+    context.fillText = (text, x, y) => { texts[text] = { x, y, width: context.measureText(text).width }; };
+    const places = {};
+    plan.camera = (_context, { id, at_m }, at) => { places[id] = at(at_m[0], at_m[2]); };
+    plan.update({ cameras, boards_m: [] }, {});
+    plan.root.remove();
+    return cameras.map(({ id, angle }) => ({ name: id, ...texts[id], at: places[id], angle, half: 0.55 }));
 }"""
 
 
@@ -105,6 +127,12 @@ def test_instruction_and_its_one_button_are_in_sight_at_every_size(
         shown.page.screenshot(path=pictures / f"step-{name}-{size_name}.png", full_page=True)
 
 
+@pytest.mark.parametrize("name", [*PAGES, "body_done"])
+def test_one_button_at_most_is_the_one_to_press(shown: Shown, name: str) -> None:
+    shown.show(*{**PAGES, "body_done": (StepName.BODY, body(measured=True))}[name])
+    assert shown.page.locator(".step-buttons .primary:visible").count() <= 1
+
+
 def test_back_leads_to_the_step_before(shown: Shown) -> None:
     expect(shown.page.locator("#back")).to_be_hidden()
     shown.show(*PAGES["lens"])
@@ -120,9 +148,24 @@ def test_drawings_say_how_to_hold_the_board_and_where_cameras_go(shown: Shown) -
         ("room", "board_floor"),
     ):
         shown.show(*PAGES[name])
-        drawing = shown.page.locator(f'img[src$="{file}.svg"]')
-        expect(drawing).to_be_visible(timeout=WAIT_MS)
-        assert drawing.evaluate("image => image.decode().then(() => image.naturalWidth)") > 0
+        drawing = shown.page.locator(f'img[src*="{file}.svg"]')
+        expect(drawing.first).to_be_visible(timeout=WAIT_MS)
+        for part in drawing.all():
+            assert part.evaluate("image => image.decode().then(() => image.naturalWidth)") > 0
+
+
+@pytest.mark.parametrize(("name", "widest"), [("cameras", 380), ("lens", 315)])
+def test_drawings_can_be_read_on_a_phone(shown: Shown, name: str, widest: int) -> None:
+    """Of parts that are drawn for that width, with letters of 13 pixels."""
+    shown.page.set_viewport_size({"width": 390, "height": 844})
+    shown.show(*PAGES[name])
+    drawing = shown.page.locator(".how img")
+    expect(drawing.last).to_be_visible(timeout=WAIT_MS)
+    widths = [
+        part.evaluate("image => image.getBoundingClientRect().width") for part in drawing.all()
+    ]
+    assert len(widths) == 2
+    assert min(widths) >= 0.75 * widest
 
 
 def test_how_far_cameras_disagree_is_not_given_as_an_error_of_the_pose(shown: Shown) -> None:
@@ -137,6 +180,21 @@ def test_the_plan_has_a_scale_and_says_how_large_the_play_area_is(shown: Shown) 
     caption = shown.page.locator("figure:has(canvas.plan) figcaption")
     expect(caption).to_contain_text("You are seen whole on")
     expect(caption).to_contain_text("cameras 3.1 m apart")
+    legend = shown.page.locator(".plan-legend li")
+    expect(legend).to_have_text(["camera", "the board was here", "two cameras see you whole"])
+
+
+def test_a_cameras_name_on_the_plan_is_not_in_what_it_sees(shown: Shown) -> None:
+    shown.show(*PAGES["room_done"])
+    named = shown.page.evaluate(NAMED)
+    assert len(named) == 8
+    for one in named:
+        across, up = np.meshgrid(np.linspace(0, one["width"], 9), [0.0, 6.0, 12.0])
+        away = np.array([one["x"] + across - one["at"][0], one["y"] - up - one["at"][1]])
+        off_rad = np.arctan2(away[1], away[0]) - one["angle"]
+        off_rad = np.abs((off_rad + np.pi) % (2 * np.pi) - np.pi)
+        assert off_rad.min() > one["half"], one["name"]
+        assert np.hypot(*away).min() > 7, "the symbol"
 
 
 def test_it_is_said_aloud_what_to_do_until_it_is_switched_off(shown: Shown) -> None:

@@ -37,6 +37,7 @@ def test_a_person_in_a_cell_is_in_both_pictures_from_foot_to_head() -> None:
 def test_cameras_that_are_too_near_are_told_to_move_back() -> None:
     (told,) = rig_advice(visible_floor(pair(1.2, 1.2)), 2)
     assert told.where == "the play area"
+    assert told.what == "both cameras see a person whole nowhere on the floor"
     assert "2.5 to 3.5 m" in told.fix
 
 

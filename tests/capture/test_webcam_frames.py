@@ -3,6 +3,7 @@
 import resource
 import tracemalloc
 from collections.abc import Mapping
+from contextlib import nullcontext
 from pathlib import Path
 
 import cv2
@@ -11,6 +12,7 @@ import pytest
 
 from mocapd.capture.camera_thread.rate import RateMeter
 from mocapd.capture.pixels import delivered_jpeg
+from mocapd.capture.webcam import v4l2
 from mocapd.capture.webcam.controls import Controls, apply_controls, control_steps
 from mocapd.capture.webcam.v4l2 import WebcamSettings, decode, negotiate
 from mocapd.errors import ConfigError, UnavailableError
@@ -128,6 +130,43 @@ class StubbornCamera:
 
 
 NODE = Path("/dev/video0")
+
+
+class DroppingCamera(StubbornCamera):
+    """Delivers pictures of the numbers given, of thirty a second, with the driver's stamps; at once."""
+
+    def __init__(self, numbers: list[int]) -> None:
+        super().__init__()
+        self._numbers = numbers
+        self.now_ms = 0.0
+
+    def isOpened(self) -> bool:
+        return True
+
+    def grab(self) -> bool:
+        self.now_ms = 1000.0 + 1000.0 / 30.0 * self._numbers.pop(0)
+        return True
+
+    def get(self, property_id: int) -> float:
+        return self.now_ms if property_id == cv2.CAP_PROP_POS_MSEC else super().get(property_id)
+
+    def retrieve(self) -> tuple[bool, Bytes]:
+        return True, np.asarray(cv2.imencode(".jpg", np.zeros((480, 640, 3), np.uint8))[1])
+
+    def release(self) -> None:
+        """Nothing is held."""
+
+
+def test_a_picture_that_never_came_is_a_gap_in_the_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
+    numbers = [*range(20), 22, 23]  # the driver's count of them is not to be had from OpenCV
+    camera = DroppingCamera(list(numbers))
+    monkeypatch.setattr(cv2, "VideoCapture", lambda *_: camera)
+    monkeypatch.setattr(v4l2, "opened_node", lambda _: nullcontext(-1))
+    monkeypatch.setattr(v4l2, "check_usable", lambda *_: None)
+    monkeypatch.setattr(v4l2, "monotonic_ns", lambda: round(1e6 * (camera.now_ms + 20.0)))
+    source = v4l2.V4l2Source("left", NODE)
+    source.open()
+    assert [source.read().seq for _ in numbers] == numbers
 
 
 def test_the_format_is_asked_for_before_the_size_and_the_size_before_the_rate() -> None:

@@ -6,6 +6,7 @@ temporary files of its own, and prints what each took, in time and on the disk; 
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -20,6 +21,7 @@ INSTALLS = re.compile(r"\b(?:pip|pipx|uv pip) (?:install|inject)\b")
 FROM_INDEX = {"eclipse-zenoh", "msgspec", "python-osc", "torch", "onnx", "numpy"}
 _BLOCK = re.compile(r"```sh\n(.*?)```", re.DOTALL)
 _TIMEOUT_S = 900.0
+_SYSTEM_PATH = "/usr/local/bin:/usr/bin:/bin"
 _OF_INDEX = re.compile(r"PIP_|UV_|SSL_|\w+_proxy$", re.IGNORECASE)  # how the index is reached
 
 
@@ -77,6 +79,7 @@ def run(text: str) -> Installed:
     """Run the installing lines of a block."""
     with tempfile.TemporaryDirectory(prefix="mocapd-install-") as folder:
         home, checkout = Path(folder) / "home", Path(folder) / "checkout"
+        tools = Path(folder) / "tools"
         home.mkdir()
         checkout.mkdir()
         archive = subprocess.run(
@@ -87,9 +90,11 @@ def run(text: str) -> Installed:
         env = kept | {
             "HOME": str(home),
             "TMPDIR": str(home),
-            "PATH": "/usr/local/bin:/usr/bin:/bin",
+            "PATH": f"{tools}/bin:{_SYSTEM_PATH}",
             "LANG": "C.UTF-8",
         }
+        if "pipx" in text and shutil.which("pipx", path=_SYSTEM_PATH) is None:
+            _get_pipx(tools)
         checkout_mb = size_mb(Path(folder))
         began_s = time.monotonic()
         done = subprocess.run(
@@ -99,6 +104,12 @@ def run(text: str) -> Installed:
         took_s = time.monotonic() - began_s
         said = (done.stdout + done.stderr)[-600:]
         return Installed(done.returncode, took_s, size_mb(Path(folder)) - checkout_mb, said)
+
+
+def _get_pipx(tools: Path) -> None:
+    """The pages expect it on the machine; Debian's package of it needs root."""
+    subprocess.run([sys.executable, "-m", "venv", tools], check=True)
+    subprocess.run([tools / "bin/pip", "install", "--quiet", "pipx"], check=True)
 
 
 def size_mb(folder: Path) -> float:

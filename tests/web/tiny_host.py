@@ -25,6 +25,7 @@ from mocapd.service.service import Snapshot
 from mocapd.trackers.canned.canned_motion import CannedMotion
 from mocapd.trackers.canned.tracker import canned_pose
 from mocapd.tracking.base import Track
+from mocapd.tracking.effort import Effort
 from mocapd.types import BodyState, Frame, FrameSet, Rig, Tracking
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context
@@ -199,6 +200,7 @@ class TinyHost:
             *(29.7 + np.sin(t_s), 100, 101, 1, ms, ms, never, Tracking.LIVE, "canned", {}),
             latency_counts=latencies.counts(),
             slowness=self.slowness,
+            effort=Effort.FULL if self.slowness is None else Effort.LEAST,
         )
         lost = "/dev/video2: gone -- plug it in again"
         status = {

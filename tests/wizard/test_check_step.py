@@ -19,7 +19,12 @@ from mocapd.calibrate.verification.grade import Grade
 from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.capture.camera_link import CameraLink
 from mocapd.config.sections import TrackerSection
-from mocapd.errors import InputError
+from mocapd.errors import InputError, Problem
+from mocapd.pipeline.bundler import CameraCounts
+from mocapd.pipeline.collector import CollectorCounts
+from mocapd.pipeline.metrics import Metrics, MetricsRecorder
+from mocapd.pipeline.slowness import Slowness
+from mocapd.types import Rig, Tracking
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.check_step import CheckStep, Phase
 from mocapd.wizard.check.missing_inputs import missing_inputs
@@ -27,7 +32,7 @@ from mocapd.wizard.draft import Draft
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import load_draft, save_draft
 from mocapd.wizard.step import Scene, StepState
-from tests.wizard.context import FakeContext, do
+from tests.wizard.context import BEGIN_NS, TICK_NS, FakeContext, do
 from tests.wizard.drafts import full_draft
 
 pytestmark = pytest.mark.kernels
@@ -154,3 +159,52 @@ def test_a_place_that_cannot_be_written_is_told_and_can_be_mended(tmp_path: Path
     assert context.times_saved == 1
     assert load_draft(context.state_dir).stature_m == 1.72
     assert step.view().details["saved"] == str(context.state_dir / FILE_NAME)
+
+
+class LosingTracking:
+    """Tracks a person while a fifth of each camera's frames is lost."""
+
+    def __init__(self, rig: Rig, slowness: Slowness | None) -> None:
+        self.rig, self._slowness, self._arrived = rig, slowness, 0
+
+    def measures(self) -> list[Measure]:
+        self._arrived += 8
+        one = CameraMeasure(np.array([0.02, 0.0]), 0.002, 0.9)
+        return [Measure(0, dict.fromkeys(self.rig.names, one), 0.1, 0.9, np.full(3, 1.0))]
+
+    def counts(self) -> dict[str, CameraCounts]:
+        counts = CameraCounts(self._arrived, self._arrived, 0, self._arrived // 4)
+        return dict.fromkeys(self.rig.names, counts)
+
+    def metrics(self) -> Metrics:
+        recorder = MetricsRecorder()
+        measured = recorder.snapshot(CollectorCounts(0, 0, {}, {}, {}), BEGIN_NS)
+        return replace(measured, tracking=Tracking.LIVE, slowness=self._slowness)
+
+
+def judged(tmp_path: Path, slowness: Slowness | None) -> list[Problem]:
+    """The problems of webcams that lose frames."""
+    context = FakeContext(tmp_path, full_draft())
+    step = check_step(context)
+    rig = context.draft.rig
+    assert rig is not None
+    step._tracking = LosingTracking(rig, slowness)  # type: ignore[assignment]
+    step._phase = Phase.SEEKING
+    for _ in range(200):
+        step.tick(context.now_ns)
+        context.now_ns += TICK_NS
+    assert step.view().details["phase"] == "judged"
+    return list(step.view().problems)
+
+
+def test_usb_is_blamed_for_what_webcams_lose_and_a_slow_machine_where_it_is_slow(
+    tmp_path: Path,
+) -> None:
+    for one in judged(tmp_path / "fast", None):
+        assert "another USB port" in one.fix, one.where
+    *cameras, machine = judged(tmp_path / "slow", Slowness(0.5, 15.0, 30.0, 60.0, 0.6))
+    assert "other programs use 60 % of this machine" in machine.what
+    for one in cameras:
+        assert one.what == "20 % of its frames are lost: this machine is too slow", "why: once"
+        assert "close other programs" in one.fix
+        assert "USB" not in one.fix

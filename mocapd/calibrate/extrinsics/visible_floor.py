@@ -71,11 +71,11 @@ def rig_advice(visible: VisibleFloor, cameras: int) -> tuple[Problem, ...]:
     by = "both cameras" if cameras == 2 else "two cameras" if cameras > 2 else "the camera"
     if visible.area_m2 < SMALL_M2:
         turn = ", or turn them towards the same place" if cameras > 1 else ""
+        see = "see" if cameras > 1 else "sees"
+        size = f"on {visible.area_m2:.1f} square metres of the floor only"
         advice.append(
             Problem(
-                f"{by} see a person whole on {visible.area_m2:.1f} square metres of the floor only"
-                if cameras > 1
-                else f"{by} sees a person whole on {visible.area_m2:.1f} square metres of the floor only",
+                f"{by} {see} a person whole {size if len(visible.cells_m) else 'nowhere on the floor'}",
                 "the play area",
                 f"move the cameras back to 2.5 to 3.5 m from its middle{turn}, and do this step again",
             )

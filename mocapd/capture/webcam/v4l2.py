@@ -24,6 +24,7 @@ from mocapd.capture.webcam.controls import (
     apply_unknown_to_opencv,
 )
 from mocapd.capture.webcam.device_access import check_usable, opened_node
+from mocapd.capture.webcam.frame_numbers import FrameNumbers
 from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.webcams import DEV, SYSFS, find_webcam
 from mocapd.clock import NS_PER_S, monotonic_ns
@@ -63,7 +64,8 @@ class V4l2Source:
     """One webcam, addressed by its USB identity or (off USB) by its node.
 
     `others`: identities of the other configured webcams, which are never taken for this one.
-    `torn` counts frames that came damaged and were left out; each is a gap in `seq`.
+    `torn` counts frames that came damaged and were left out; each is a gap in `seq`, as are frames that never came
+    (see FrameNumbers).
     """
 
     recorded = False
@@ -84,7 +86,7 @@ class V4l2Source:
         self._settings = settings if settings is not None else WebcamSettings()
         self._others = others
         self._sysfs, self._dev = sysfs, dev
-        self._seq = 0
+        self._numbers = FrameNumbers()
         self._openings = Openings()
         self._delivered = False  # since it was opened
 
@@ -133,6 +135,7 @@ class V4l2Source:
             )
         self.negotiated = replace(got, controls=got.controls + further)
         self._delivered = False
+        self._numbers.restart()
         self._warn(self.negotiated)
 
     def read(self) -> Frame:
@@ -150,14 +153,15 @@ class V4l2Source:
                 if guarded.closing or not capture.grab():
                     break
                 grabbed_ns = monotonic_ns()
-                t_ns = _stamp_ns(capture.get(cv2.CAP_PROP_POS_MSEC), grabbed_ns)
-                good, raw = capture.retrieve()
-            seq, self._seq = self._seq, self._seq + 1
+                stamp_ns = _stamp_ns(capture.get(cv2.CAP_PROP_POS_MSEC), grabbed_ns)
+                good, raw = capture.retrieve()  # gives the buffer back
+            seq = self._numbers.number(stamp_ns, monotonic_ns())
             fourcc = negotiated.fourcc
             pixels = decode(raw, fourcc, negotiated.size_px) if good else None
             if pixels is not None:
                 self._delivered = True
                 encoded = delivered_jpeg(raw, pixels) if fourcc == _MJPG else None
+                t_ns = grabbed_ns if stamp_ns is None else stamp_ns
                 return Frame(self.name, seq, t_ns, pixels, encoded)
             self.torn += 1
             if grabbed_ns - began_ns > _TORN_LIMIT_NS:
@@ -294,7 +298,7 @@ def decode(raw: MatLike, fourcc: str, size_px: tuple[int, int]) -> Bytes | None:
     return frozen_pixels(decoded) if decoded.shape == (height, width, 3) else None
 
 
-def _stamp_ns(driver_ms: float, grabbed_ns: int) -> int:
-    """The driver's time of capture, if it is of CLOCK_MONOTONIC and not absurd; else of the grab."""
+def _stamp_ns(driver_ms: float, grabbed_ns: int) -> int | None:
+    """The driver's time of capture, if it is of CLOCK_MONOTONIC and not absurd."""
     t_ns = round(driver_ms * 1e6)
-    return t_ns if 0 <= grabbed_ns - t_ns < _OLDEST_STAMP_NS else grabbed_ns
+    return t_ns if 0 <= grabbed_ns - t_ns < _OLDEST_STAMP_NS else None

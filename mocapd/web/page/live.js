@@ -165,10 +165,11 @@ export class Live {
     this.state(
       ...tracking(figures),
       `tracker ${figures.tracker || "–"}, ${number(figures.rate_hz)} poses a second, ` +
-        `${number(latency.median)} ms from light to output and ` +
-        `${number(figures.lag_ms.median)} ms of smoothing, step ${number(figures.step_ms.median)} ms, ` +
+        `${number(latency.median)} ms from light to output` +
+        (figures.lag_ms.median === null ? "" : ` and ${number(figures.lag_ms.median)} ms of smoothing`) +
+        `, step ${number(figures.step_ms.median)} ms, ` +
         `${figures.sets_dropped} of ${figures.sets_made} frame sets skipped` +
-        (figures.effort ? `; ${mended(figures.effort)}` : ""),
+        (figures.effort && !figures.slowness ? `; ${mended(figures.effort)}` : ""), // the remedy is said once
     );
     const now_s = performance.now() / 1000;
     this.plots[0].add(now_s, [figures.rate_hz]);

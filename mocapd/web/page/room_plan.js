@@ -3,17 +3,20 @@
 import { element } from "./setup.js";
 
 const MARGIN_M = 0.5;
-const LEGEND_PX = 60; // below the plan
+const SCALE_PX = 30; // below the plan
+const NAME_PX = 22; // above and below the plan, for a camera's name
+const DOT_PX = 7;
 
 /** The room from above, players facing down the page: cameras with what they see, places of the board. */
 export class Plan {
   constructor() {
-    this.canvas = element("canvas", { width: 640, height: 480, role: "img", class: "plan" });
+    this.canvas = element("canvas", { width: 640, height: 450, role: "img", class: "plan" });
     this.canvas.style.width = "100%";
     this.root = element(
       "figure",
       { class: "camera", hidden: true },
       this.canvas,
+      (this.legend = element("ul", { class: "plan-legend" })),
       (this.caption = element("figcaption", {})),
     );
     this.told = "";
@@ -39,8 +42,8 @@ export class Plan {
     const low = [0, 2].map((axis) => Math.min(...points.map((point) => point[axis])) - MARGIN_M);
     const high = [0, 2].map((axis) => Math.max(...points.map((point) => point[axis])) + MARGIN_M);
     const { width } = this.canvas;
-    const height = this.canvas.height - LEGEND_PX;
-    const scale = Math.min(width / (high[0] - low[0]), height / (high[1] - low[1]));
+    const height = this.canvas.height - SCALE_PX;
+    const scale = Math.min(width / (high[0] - low[0]), (height - 2 * NAME_PX) / (high[1] - low[1]));
     // a player at rest looks along +z, its left is +x: with +z down the page, +x is to the right
     const at = (x, z) => [
       width / 2 + (x - (low[0] + high[0]) / 2) * scale,
@@ -60,46 +63,43 @@ export class Plan {
     for (const camera of plan.cameras) this.camera(context, camera, at, scale, colour("--accent"));
     context.fillStyle = colour("--text");
     context.font = "600 18px system-ui, sans-serif";
-    for (const { id, at_m } of plan.cameras) {
-      const [x, y] = at(at_m[0], at_m[2]);
+    for (const { id, at_m, towards } of plan.cameras) {
       const name = names[id] ?? id;
-      const across = context.measureText(name).width;
-      context.fillText(name, Math.min(Math.max(4, x + 10), width - across - 4), Math.max(20, y - 10));
+      context.fillText(name, ...nameAt(at(at_m[0], at_m[2]), towards, context.measureText(name).width, width));
     }
     context.fillText("0", ...at(0, 0).map((pixel) => pixel + 6));
-    this.legend(context, colour, scale, plan);
+    this.scaleBar(context, colour, scale);
+    this.drawLegend(plan);
   }
 
-  /** A metre, and what the colours mean. */
-  legend(context, colour, scale, plan) {
-    const [top, left] = [this.canvas.height - LEGEND_PX, 16];
+  /** A metre. */
+  scaleBar(context, colour, scale) {
+    const [top, left] = [this.canvas.height - SCALE_PX, 16];
     context.fillStyle = colour("--panel");
-    context.fillRect(0, top, this.canvas.width, LEGEND_PX);
+    context.fillRect(0, top, this.canvas.width, SCALE_PX);
     context.strokeStyle = context.fillStyle = colour("--text");
     context.lineWidth = 2;
     context.beginPath();
-    context.moveTo(left, top + 14);
-    context.lineTo(left, top + 26);
-    context.moveTo(left, top + 20);
-    context.lineTo(left + scale, top + 20);
-    context.moveTo(left + scale, top + 14);
-    context.lineTo(left + scale, top + 26);
+    context.moveTo(left, top + 10);
+    context.lineTo(left, top + 22);
+    context.moveTo(left, top + 16);
+    context.lineTo(left + scale, top + 16);
+    context.moveTo(left + scale, top + 10);
+    context.lineTo(left + scale, top + 22);
     context.stroke();
     context.font = "600 16px system-ui, sans-serif";
-    context.fillText("1 m", left + scale + 10, top + 26);
-    context.font = "15px system-ui, sans-serif";
-    let x = left;
+    context.fillText("1 m", left + scale + 10, top + 22);
+  }
+
+  /** What the colours mean. */
+  drawLegend(plan) {
     const whole = plan.cameras.length > 1 ? "two cameras see you whole" : "the camera sees you whole";
-    for (const [name, text] of [["--accent", "camera"], ["--text-soft", "the board was here"], ["--good-soft", whole]]) {
-      context.fillStyle = colour(name);
-      context.fillRect(x, top + 38, 16, 14);
-      context.strokeStyle = colour("--text-soft");
-      context.lineWidth = 1;
-      context.strokeRect(x, top + 38, 16, 14);
-      context.fillStyle = colour("--text");
-      context.fillText(text, x + 24, top + 51);
-      x += 48 + context.measureText(text).width;
-    }
+    const colours = [["of-camera", "camera"]];
+    if (plan.boards_m.length) colours.push(["of-board", "the board was here"]);
+    if (plan.seen_m?.length) colours.push(["of-floor", whole]);
+    this.legend.replaceChildren(
+      ...colours.map(([look, text]) => element("li", {}, element("span", { class: `plan-key ${look}` }), text)),
+    );
   }
 
   grid(context, at, low, high, colour) {
@@ -136,7 +136,7 @@ export class Plan {
       context.lineTo(x + scale * Math.cos(angle + side), y + scale * Math.sin(angle + side));
     }
     context.stroke();
-    dot(context, [x, y], 7);
+    dot(context, [x, y], DOT_PX);
   }
 }
 
@@ -146,10 +146,20 @@ function dot(context, [x, y], radius) {
   context.fill();
 }
 
+/** Where a camera's name begins [px]: behind the camera, out of what it sees. */
+function nameAt([x, y], [right, , down], across, width) {
+  const length = Math.hypot(right, down) || 1;
+  const left = x - (right / length) * (across / 2) - across / 2;
+  const baseline = down > 0 ? y - DOT_PX - 5 : y + DOT_PX + 18;
+  return [Math.min(Math.max(4, left), width - across - 4), baseline];
+}
+
 /** The figures of the rig, in words. */
 function summary(plan) {
   if (!plan.size_m) return "";
-  const parts = [`You are seen whole on ${plan.size_m[0].toFixed(1)} × ${plan.size_m[1].toFixed(1)} m of the floor (green)`];
+  const [across, along] = plan.size_m.map((metres) => metres.toFixed(1));
+  const seen = plan.seen_m.length ? `on ${across} × ${along} m of the floor (green)` : "nowhere";
+  const parts = [`You are seen whole ${seen}`];
   if (plan.cameras.length > 1) parts.push(`cameras ${plan.baseline_m.toFixed(1)} m apart`);
   if (plan.angle_deg !== null && plan.angle_deg !== undefined) parts.push(`${plan.angle_deg} degrees`);
   return `${parts.join(", ")}.`;

@@ -96,6 +96,7 @@ export class StepPart {
     this.measure.disabled = !details.can_measure || details.measuring;
     this.measure.title = details.why_not;
     setText(this.measure, details.measured ? "Measure again" : "Measure");
+    this.measure.classList.toggle("primary", !details.measured); // then "Next" is the one to press
     this.skip.disabled = details.stature_m === null;
     this.drawLengths(details);
     const told = details.pictures.join("\n");

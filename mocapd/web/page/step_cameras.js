@@ -46,7 +46,10 @@ export class StepPart {
       "details",
       { id: "where-cameras-go", class: "panel", open: true },
       element("summary", {}, "Where cameras go"),
-      boardPicture("camera_places.svg", WHERE),
+      boardPicture("camera_places.svg", WHERE, [
+        [0, 0, 380, 300],
+        [380, 0, 380, 300],
+      ]),
     );
     root.replaceChildren(kept, questions, this.list, where, this.others);
   }

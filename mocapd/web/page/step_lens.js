@@ -34,7 +34,10 @@ export class StepPart {
       ),
       element("div", { class: "row" }, this.useAll),
       this.note,
-      boardPicture("board_views.svg", "How to hold the board: turned to one camera at a time, near and far, in the middle and at every edge, tilted to each side"),
+      boardPicture("board_views.svg", "How to hold the board: turned to one camera at a time, near and far, in the middle and at every edge, tilted to each side", [
+        [0, 0, 315, 142],
+        [315, 0, 315, 142],
+      ]),
       this.board.root,
     );
     this.cameras = cameras;
@@ -221,10 +224,18 @@ class BoardForm {
   }
 }
 
-/** A drawing of what to do, one of the page's files. */
-export function boardPicture(file, words) {
+/** A drawing of what to do, one of the page's files. parts: boxes of it [x, y, width, height], which stand below each
+ * other on a narrow screen, where the whole would be too small to read. */
+export function boardPicture(file, words, parts = []) {
   const src = new URL(file, import.meta.url).href;
-  return element("figure", { class: "how" }, element("img", { src, alt: words }), element("figcaption", {}, words));
+  const whole = element("img", { src, alt: words });
+  const images = parts.map((box, index) => {
+    const part = element("img", { src: `${src}#svgView(viewBox(${box.join(",")}))`, alt: index ? "" : words });
+    part.style.aspectRatio = `${box[2]} / ${box[3]}`;
+    return part;
+  });
+  const shown = element("div", { class: "how-parts" }, ...(images.length ? images : [whole]));
+  return element("figure", { class: "how" }, shown, element("figcaption", {}, words));
 }
 
 function headings(...texts) {

@@ -13,15 +13,15 @@ from dataclasses import asdict, replace
 from mocapd.boundary.numbers import brief
 from mocapd.boundary.urls import without_password
 from mocapd.calibrate.light.light_check import light_problems
-from mocapd.calibrate.verification.delivery import Delivery, delivery_judgements
+from mocapd.calibrate.verification.delivery import delivery_judgements
 from mocapd.calibrate.verification.grade import Grade
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
-from mocapd.capture.kinds.source_kinds import link_of
 from mocapd.capture.webcam.usb_bandwidth import Mode
 from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.clock import NS_PER_S
 from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.pipeline.other_programs import OtherPrograms
+from mocapd.wizard.camera_delivery import camera_delivery
 from mocapd.wizard.camera_trouble import too_few_cameras
 from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locking import CameraLocking, LockPhase
@@ -260,14 +260,8 @@ class CamerasStep:
         recent = self._watch.recent(camera.id)
         if len(recent.t_ns):
             recent = recent.since(int(recent.t_ns[-1]) - _JUDGED_NS)
-        delivery = Delivery(
-            len(recent.t_ns),
-            recent.lost(camera.fps_hz),
-            rate_hz,
-            camera.fps_hz,
-            link_of(camera.source),
-            slow=self._machine.slow,
-        )
+        counts = recent.counts(camera.fps_hz)
+        delivery = camera_delivery(camera, counts, rate_hz, self._machine.slow)
         worst = min(delivery_judgements(delivery), key=lambda entry: entry[0] is Grade.GOOD)
         return Problem(worst[1], camera.id, worst[2])
 

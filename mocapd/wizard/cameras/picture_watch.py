@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 
 from mocapd.clock import NS_PER_S
+from mocapd.pipeline.bundler import CameraCounts
 from mocapd.types import Bytes, Floats, Frame, Ints
 
 _KEPT = 90  # frames of a camera
@@ -47,11 +48,13 @@ class Recent:
         later = self.t_ns > t_ns
         return Recent(self.t_ns[later], self.seq[later], self.rows[later], self.bgr[later])
 
-    def lost(self, asked_hz: float) -> int:
-        """Frames that the camera counted between these, and that never arrived. `seq` may come from an untrusted camera
-        node, so a gap counts at most the frames that fit into its time; it restarts when a camera is reopened."""
+    def counts(self, asked_hz: float) -> CameraCounts:
+        """These frames, and those that the camera counted between them and that never arrived. `seq` may come from an
+        untrusted camera node, so a gap counts at most the frames that fit into its time; it restarts when a camera is
+        reopened."""
         most = np.floor(np.diff(self.t_ns) / NS_PER_S * asked_hz).astype(np.int64)
-        return int(np.clip(np.diff(self.seq) - 1, 0, np.maximum(most, 0)).sum())
+        lost = int(np.clip(np.diff(self.seq) - 1, 0, np.maximum(most, 0)).sum())
+        return CameraCounts(received=len(self.t_ns), used=len(self.t_ns), late=0, lost=lost)
 
 
 def row_means(pixels: Bytes) -> tuple[Floats, Floats]:

@@ -20,15 +20,12 @@ from mocapd.calibrate.verification.check_verdict import (
     room_problems,
     verdict_json,
 )
-from mocapd.calibrate.verification.delivery import Delivery
-from mocapd.capture.camera_link import CameraLink
-from mocapd.capture.kinds.source_kinds import link_of
 from mocapd.clock import NS_PER_S, seconds
 from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.pipeline.bundler import CameraCounts
 from mocapd.pipeline.loop import OnDeath
-from mocapd.pipeline.slowness import Slowness
 from mocapd.types import Tracking
+from mocapd.wizard.camera_delivery import camera_delivery
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.check_tracking import CheckTracker, CheckTracking, LoadTracker, prepare
 from mocapd.wizard.check.check_verbs import CHECK, MeasureAgain, Save
@@ -231,21 +228,18 @@ class CheckStep:
     def _judge(self) -> None:
         assert self._tracking is not None
         draft, statuses = self._context.draft, self._context.statuses()
-        counts, asked = (
-            self._tracking.counts(),
-            {c.id: (c.fps_hz, link_of(c.source)) for c in draft.cameras},
-        )
+        counts, cameras = self._tracking.counts(), {one.id: one for one in draft.cameras}
         slowness = self._tracking.metrics().slowness
+        slow = None if slowness is None else ("too slow", slowness.fix)  # why: see _slowness
         self._verdicts = tuple(
             camera_verdict(
                 camera.name,
                 self._measures,
-                _delivery(
-                    self._counts[camera.name],
-                    counts[camera.name],
+                camera_delivery(
+                    cameras[camera.name],
+                    counts[camera.name].since(self._counts[camera.name]),
                     statuses[camera.name].fps_hz if camera.name in statuses else 0.0,
-                    *asked.get(camera.name, (30.0, CameraLink.DEVICE)),
-                    slowness,
+                    slow,
                 ),
                 camera.size_px[0],
                 draft.has_shirt,
@@ -303,23 +297,3 @@ class CheckStep:
         if self._problems or any(verdict.problem for verdict in self._verdicts):
             return StepState.DONE, "See below what is doubtful; mend it, or save it as it is.", 1.0
         return StepState.DONE, "All is well: save it.", 1.0
-
-
-def _delivery(
-    before: CameraCounts,
-    now: CameraCounts,
-    rate_hz: float,
-    asked_hz: float,
-    link: CameraLink,
-    slowness: Slowness | None,
-) -> Delivery:
-    """A camera's frames between two counts."""
-    return Delivery(
-        now.received - before.received,
-        now.lost - before.lost,
-        rate_hz,
-        asked_hz,
-        link,
-        late=now.late - before.late,
-        slow=None if slowness is None else (slowness.what, slowness.fix),
-    )
