@@ -55,7 +55,7 @@ class FootHeading:
         for joints in at.joints:
             starts = list(legs_with_turned_feet(at.solvers.fitter, now.fit.state, joints, p))
             if starts:
-                better = best_start(now, at, joints, starts, p.iterations, p.gain, farther=0.0)
+                better = best_start(now, at, starts, p.iterations, p.gain, farther=0.0)
                 if better.fit is now.fit:
                     self._next_tick = at.ticks.last + p.pause_ticks
                 now = better

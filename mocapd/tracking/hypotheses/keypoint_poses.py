@@ -66,30 +66,30 @@ def best_keypoint_pose(
         fitter, now.fit, joints, held, params, legs_alone=at.trunk_prior is not None
     )
     return best_start(
-        now, at, joints, starts, params.fit_iterations, params.gain, params.farther, is_reversed
-    )
+        now, at, starts, params.fit_iterations, params.gain, params.farther, None if is_reversed else joints
+    )  # fmt: skip
 
 
 def best_start(
     now: ScoredFit,
     at: HypothesisContext,
-    joints: JointTerm,
     starts: Sequence[tuple[MotionState, tuple[str, ...]]],
     iterations: int,
     gained: float,
     farther: float,
-    trusts_keypoints: bool = False,
+    doubted: JointTerm | None = None,
 ) -> ScoredFit:
     """The cheapest of the present fit and those that start at `starts`, each with the parts that it changes.
 
     gained: by how much the cost must fall [disagreeing pixels]; farther: how much more it must fall for limbs that are
-    farther away [disagreeing pixels/rad^2]; trusts_keypoints: where all of the body changes, too.
+    farther away [disagreeing pixels/rad^2]; doubted: keypoints that do not count where all of the body changes, since it
+    starts there: the pictures must confirm it without them.
     """
     fitter = at.solvers.fitter
     here_xyzw = now.fit.state.local_xyzw[_LONG_BONES]
 
-    def cost_of(fit: Fit) -> float:
-        return float(joints.costs(fitter.joints(fit.state)[0]).sum())
+    def cost_of(fit: Fit, keypoints: JointTerm) -> float:
+        return float(keypoints.costs(fitter.joints(fit.state)[0]).sum())
 
     best = now
     for start, changed in starts:
@@ -102,10 +102,8 @@ def best_start(
         )  # fmt: skip
         away_rad2 = float(turned_rad2(fit.state.local_xyzw[None, _LONG_BONES], here_xyzw)[0])
         gain = now.fit.cost_for_any_pose - fit.cost_for_any_pose - farther * away_rad2
-        if (
-            WHOLE in changed and not trusts_keypoints
-        ):  # started by the keypoints: the pictures must confirm it without them
-            gain -= cost_of(now.fit) - cost_of(fit)
+        if WHOLE in changed and doubted is not None:
+            gain -= cost_of(now.fit, doubted) - cost_of(fit, doubted)
         if gain > gained:
             best, gained = ScoredFit(fit, views, terms, changed), gain
     return best
