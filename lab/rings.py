@@ -39,7 +39,7 @@ def rings(
         runs = [*((folder, "") for folder in folders), *_each_left_out(captures or ())]
         scores = []
         for k, (folder, left_out) in enumerate(runs):
-            progress(f"tracking {folder.name}", k, len(runs))
+            progress("tracking", k, len(runs))
             case = open_case(folder)
             scores.append(
                 ring_score(case, left_out, lambda known: ready_tracker(name, known, resources), stature_m)
