@@ -38,12 +38,12 @@ def rings(
         folders = recorded_set.recorded(sessions, config.cache_dir, progress)
         runs = [*((folder, "") for folder in folders), *_each_left_out(captures or ())]
         scores = []
-        for k, (folder, left_out) in enumerate(runs):
-            progress("tracking", k, len(runs))
+        for folder, left_out in runs:
             case = open_case(folder)
             scores.append(
                 ring_score(case, left_out, lambda known: ready_tracker(name, known, resources), stature_m)
             )  # fmt: skip
+            progress("tracking", len(scores), len(runs))
     simulated, captured = scores[: len(folders)], scores[len(folders) :]
     sys.stdout.write(f"{page.sessions_table(simulated)}\n\n{page.left_out_table(captured)}\n")
     if out is not None:

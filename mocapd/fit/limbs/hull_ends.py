@@ -62,6 +62,12 @@ def hull_views(fitter: Fitter, views: Sequence[View], params: HullEndParams) -> 
     return HullViews(views, beside, [_log_odds(fitter, view) for view in views])
 
 
+def rehearse_hull(fitter: Fitter) -> None:
+    """Compiles or loads the hull's kernel."""
+    cameras = [drawing.camera for drawing in fitter.drawings]
+    carve_log_odds(cameras, [np.zeros((2, 2), np.float32) for _ in cameras], np.zeros((1, 3)))
+
+
 def wrist_at_hull_end(
     fitter: Fitter, joints_m: Floats, side: str, seen: HullViews, params: HullEndParams
 ) -> Floats | None:

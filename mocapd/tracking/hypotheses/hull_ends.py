@@ -11,9 +11,15 @@ import numpy as np
 from mocapd.body.pose_space import SIDES
 from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.limbs.hand_target_poses import hand_poses
-from mocapd.fit.limbs.hull_ends import HullEndParams, hull_views, wrist_at_hull_end
+from mocapd.fit.limbs.hull_ends import (
+    HullEndParams,
+    hull_views,
+    rehearse_hull,
+    wrist_at_hull_end,
+)
 from mocapd.fit.limbs.limb_fits import with_limb
 from mocapd.fit.limbs.limb_scores import score_arm_poses
+from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.motion_state import MotionState
 from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
 from mocapd.tracking.hypotheses.keypoint_poses import best_start
@@ -45,7 +51,13 @@ class HullEnds:
         self._next_tick = 0
 
     def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
-        """See PoseHypothesis."""
+        """See PoseHypothesis. Nothing with fewer cameras, which never reach these kernels."""
+        fitter = at.solvers.fitter
+        if len(fitter.drawings) < self._params.ends.cameras:
+            return
+        rehearse_hull(fitter)
+        joints_m, _ = fitter.joints(now.fit.state)
+        self._reaching(now, at, "left", joints_m[LIMBS["left_arm"].end])
 
     def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
         """See PoseHypothesis. Unchanged with fewer cameras, and where the shirt places the arms. The body was drawn last into
