@@ -18,7 +18,7 @@ from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry import rotations
 from mocapd.tracking.hypotheses.axial_turn import triangulated_between_m, turn_about_rad
 from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
-from mocapd.tracking.hypotheses.keypoint_poses import best_start
+from mocapd.tracking.hypotheses.best_start import best_start
 
 
 @dataclass(frozen=True, slots=True)

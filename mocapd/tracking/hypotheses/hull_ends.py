@@ -22,7 +22,7 @@ from mocapd.fit.limbs.limb_scores import score_arm_poses
 from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.motion_state import MotionState
 from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
-from mocapd.tracking.hypotheses.keypoint_poses import best_start
+from mocapd.tracking.hypotheses.best_start import best_start
 from mocapd.types import Floats
 
 
