@@ -86,7 +86,7 @@ class Demo:
         self._command = [*before, "make", "demo"]
         if environment is not None:
             self.env["PYTHONPATH"] = str(clone)
-            self._command = [*before, str(environment / "bin" / "mocapd"), "demo"]
+            self._command = [*before, str(environment.resolve() / "bin" / "mocapd"), "demo"]
 
     def start(self, prepares: bool) -> Start:
         """Until somebody is tracked and, where it `prepares`, everything is prepared; then it is ended."""

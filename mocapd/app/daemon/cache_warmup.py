@@ -154,7 +154,8 @@ def _run_tasks(config: "Config", report: Report) -> bool:
 def _about(seconds: float) -> str:
     """A rounded duration, for users."""
     if seconds < 90.0:
-        return f"about {max(1, round(seconds / 10.0)) * 10} s"
+        step_s = 5 if seconds < 30.0 else 10
+        return f"about {max(1, round(seconds / step_s)) * step_s} s"
     return f"about {seconds / 60.0:.0f} minutes"
 
 

@@ -17,6 +17,7 @@ Share = Callable[[float], None]  # reports the done share of a task, 0..1
 _REPORT_S = 0.25
 _LATER_NICE = 10
 _TRUSTED_S = 3.0  # of work, after which measured and given pace have equal weight
+_LATER_PACE = 1.5  # of later tasks, relative to the others: a stream runs beside them
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +56,16 @@ class _State:
     first_pace: float
     done: set[int] = field(default_factory=set)
     taken: set[int] = field(default_factory=set)
-    spent_s: float = 0.0  # elapsed time of finished tasks
-    expected_s: float = 0.0  # their expected time
+    # elapsed and expected time of the finished tasks, by is_later
+    spent_s: dict[bool, float] = field(default_factory=lambda: {False: 0.0, True: 0.0})
+    expected_s: dict[bool, float] = field(default_factory=lambda: {False: 0.0, True: 0.0})
+
+    def pace(self, is_later: bool) -> float:
+        """Time of this machine relative to `Task.seconds`: as measured and as expected, which counts as _TRUSTED_S of work."""
+        expected = _LATER_PACE * self.pace(False) if is_later else self.first_pace
+        return (self.spent_s[is_later] + _TRUSTED_S * expected) / (
+            self.expected_s[is_later] + _TRUSTED_S
+        )
 
 
 def run_tasks(
@@ -93,7 +102,7 @@ def run_tasks(
                 worker = next(w for w in workers if w.pipe is pipe)
                 if not _receive(worker, state):
                     return False
-            report(_progress(workers, state, processes))
+            report(_progress(workers, state, way_s, processes))
         return True
     finally:
         for worker in workers:
@@ -132,26 +141,34 @@ def _receive(worker: _Worker, state: _State) -> bool:
         worker.share = message
     else:
         state.done.add(worker.task)
-        state.spent_s += time.monotonic() - worker.began_s
-        state.expected_s += state.tasks[worker.task].seconds
+        task = state.tasks[worker.task]
+        state.spent_s[task.is_later] += time.monotonic() - worker.began_s
+        state.expected_s[task.is_later] += task.seconds
         worker.task = -1
     return True
 
 
-def _progress(workers: Sequence[_Worker], state: _State, processes: int) -> Progress:
-    # the given pace has the weight of _TRUSTED_S of work
-    pace = (state.spent_s + _TRUSTED_S * state.first_pace) / (state.expected_s + _TRUSTED_S)
-    done_s: dict[str, float] = {}
-    all_s: dict[str, float] = {}
-    for i, task in enumerate(state.tasks):
-        all_s[task.what] = all_s.get(task.what, 0.0) + task.seconds
-        done_s[task.what] = done_s.get(task.what, 0.0) + task.seconds * (i in state.done)
+def _progress(
+    workers: Sequence[_Worker], state: _State, way_s: Sequence[float], processes: int
+) -> Progress:
+    paces = {is_later: state.pace(is_later) for is_later in (False, True)}
+    share = [float(i in state.done) for i in range(len(state.tasks))]
     for worker in workers:
         if worker.task >= 0:
-            task = state.tasks[worker.task]
-            guess = min((time.monotonic() - worker.began_s) / max(pace * task.seconds, 1e-3), 0.9)
-            done_s[task.what] += task.seconds * (worker.share if task.reports else guess)
-    left_s = pace * (sum(all_s.values()) - sum(done_s.values())) / max(1, processes)
+            task, elapsed_s = state.tasks[worker.task], time.monotonic() - worker.began_s
+            guess = min(elapsed_s / max(paces[task.is_later] * task.seconds, 1e-3), 0.9)
+            share[worker.task] = worker.share if task.reports else guess
+    done_s: dict[str, float] = {}
+    all_s: dict[str, float] = {}
+    work_s = chain_s = 0.0
+    for task, done, chain in zip(state.tasks, share, way_s, strict=True):
+        all_s[task.what] = all_s.get(task.what, 0.0) + task.seconds
+        done_s[task.what] = done_s.get(task.what, 0.0) + task.seconds * done
+        if done < 1.0:
+            pace = paces[task.is_later]
+            work_s += pace * task.seconds * (1.0 - done)
+            chain_s = max(chain_s, pace * (chain - task.seconds * done))
+    left_s = max(work_s / max(1, processes), chain_s)
     return Progress({what: done_s[what] / max(all_s[what], 1e-9) for what in all_s}, left_s)
 
 

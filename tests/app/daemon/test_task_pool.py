@@ -79,6 +79,29 @@ def test_progress_is_by_expected_seconds_and_what_a_long_task_tells() -> None:
     assert told[-1].left_s == 0.0
 
 
+def test_what_is_left_is_no_shorter_than_what_must_follow_one_another() -> None:
+    told: list[Progress] = []
+    tasks = [
+        Task("all", 1.0, lambda _: time.sleep(0.5)),
+        Task("all", 9.0, lambda _: None, frozenset({0})),
+    ]
+    assert run_tasks(tasks, 2, told.append)
+    assert told[0].left_s > 7.0  # 5 s, if both processes could share it
+
+
+def test_later_tasks_are_expected_to_be_slowed_by_the_stream() -> None:
+    left_s = []
+    for is_later in (False, True):
+        told: list[Progress] = []
+        tasks = [
+            Task("all", 1.0, lambda _: time.sleep(0.5)),
+            Task("all", 9.0, lambda _: None, frozenset({0}), is_later),
+        ]
+        assert run_tasks(tasks, 1, told.append)
+        left_s.append(told[0].left_s)
+    assert left_s[1] > 1.1 * left_s[0]
+
+
 def test_the_processes_end_with_who_began_them(tmp_path: Path) -> None:
     program = (
         "import os, time\n"
