@@ -164,6 +164,8 @@ def _progress_text(progress: "Progress") -> str:
     open_shares = [
         f"{what} {100 * share:.0f} %" for what, share in progress.shares.items() if share < 1.0
     ]
+    if not open_shares:
+        return "once on this machine: done in a moment"
     return f"once on this machine: {', '.join(open_shares)}; {_about(progress.left_s)} left"
 
 

@@ -20,9 +20,9 @@ class EarlyStart:
         """See LoopHook."""
         if not self._waits:
             return
-        self._report(self._preparation.newest())
-        if self._preparation.is_over:
-            self._waits = False
+        self._waits = not self._preparation.is_over
+        self._report(self._preparation.newest() if self._waits else "")
+        if not self._waits:
             self._change.ask(PREPARED)
 
     def let_go(self) -> None:

@@ -11,7 +11,7 @@ from mocapd.app.daemon.cache_warmup import Preparation
 from mocapd.app.daemon.early_start import EarlyStart
 from mocapd.app.daemon.first_start_tasks import begins_early, first_start_tasks
 from mocapd.app.daemon.session_change import PREPARED
-from mocapd.app.daemon.task_pool import Share, Task, run_tasks
+from mocapd.app.daemon.task_pool import Progress, Share, Task, run_tasks
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from tests.outputs.frames import eventually
 
@@ -84,6 +84,19 @@ def test_waiting_ends_when_a_stream_can_begin(
     over.append(preparation.is_over)
     assert over == [False, True]
     assert preparation.newest() == ""
+
+
+def test_what_is_done_is_not_listed() -> None:
+    told = [
+        cache_warmup._progress_text(
+            Progress({"film": share, "compiling": 1.0}, 10.0 - 10.0 * share)
+        )
+        for share in (0.4, 1.0)
+    ]
+    assert told == [
+        "once on this machine: film 40 %; about 5 s left",
+        "once on this machine: done in a moment",
+    ]
 
 
 class Change:
