@@ -61,7 +61,7 @@ class _State:
     expected_s: dict[bool, float] = field(default_factory=lambda: {False: 0.0, True: 0.0})
 
     def pace(self, is_later: bool) -> float:
-        """Time of this machine relative to `Task.seconds`: as measured and as expected, which counts as _TRUSTED_S of work."""
+        """Time of this machine relative to `Task.seconds`: as measured, and as expected with the weight of _TRUSTED_S."""
         expected = _LATER_PACE * self.pace(False) if is_later else self.first_pace
         return (self.spent_s[is_later] + _TRUSTED_S * expected) / (
             self.expected_s[is_later] + _TRUSTED_S
