@@ -1,5 +1,6 @@
 """`mocapd-client` built, installed into an empty folder, and a game that has nothing else but its two libraries."""
 
+import ast
 import json
 import subprocess
 import sys
@@ -68,6 +69,20 @@ def test_a_game_runs_on_it_with_zenoh_and_msgspec_alone(wheel: Path, tmp_path: P
     assert hand_m[1] > 1.0, "the canned person waves"
     assert stature_m == pytest.approx(1.75)
     assert instance == INSTANCE
+
+
+def test_the_goalkeeper_finds_in_it_all_that_it_imports(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as opened:
+        there = {name.removesuffix(".py").replace("/", ".") for name in opened.namelist()}
+    sources = sorted((ROOT / "clients" / "goalkeeper" / "goalkeeper").rglob("*.py"))
+    asked = {
+        node.module
+        for source in sources
+        for node in ast.walk(ast.parse(source.read_text()))
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("mocapd.")
+    }
+    assert {"mocapd.client", "mocapd.child_process"} <= asked
+    assert {one for one in asked if not {one, f"{one}.__init__"} & there} == set()
 
 
 def test_it_carries_the_clients_modules_and_nothing_of_the_tracker(wheel: Path) -> None:

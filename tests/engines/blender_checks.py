@@ -1,4 +1,4 @@
-"""BVH and GLB in headless Blender, joint by joint against the CSV of the same recording."""
+"""BVH and GLB in headless Blender, joint by joint against the CSV of the same recording, and the GLB's figure about them."""
 
 import csv
 import json
@@ -17,6 +17,7 @@ from tests.outputs.recorded import frames, record
 
 WHERE = "Blender"
 JOINTS_CM = 0.1
+FIGURE_CM = 15.0  # half of the trunk's thickness
 SECONDS = 9.0
 RECORDED_HZ = 25.0  # no rate of Blender's own
 EXPORTED_HZ = 30.0
@@ -42,7 +43,10 @@ def blender_checks(chroot: Chroot, work: Path, logs: Path) -> Iterator[Result]:
         if not out.is_file():
             yield Result(WHERE, f"{kind.upper()} imported", f"no; see {log}", "yes", False)
             continue
-        yield _compared(kind, json.loads(out.read_text()), truth_m)
+        seen = json.loads(out.read_text())
+        yield _compared(kind, seen, truth_m)
+        if kind == "glb":
+            yield _worn(seen["figure"], len(seen["poses"]))
 
 
 def _compared(kind: str, seen: dict[str, object], truth_m: dict[str, Floats]) -> Result:
@@ -57,6 +61,15 @@ def _compared(kind: str, seen: dict[str, object], truth_m: dict[str, Floats]) ->
     ]
     what = f"{kind.upper()}, {len(truth_m)} joints in {len(poses)} frames, greatest error"
     return at_most(WHERE, what, CM * float(max(errors_m)), JOINTS_CM, "cm")
+
+
+def _worn(figure: list[dict[str, float]], n_frames: int) -> Result:
+    """Whether one skinned figure has every joint within it, or just outside, in every frame."""
+    if len(figure) != n_frames:
+        return Result(WHERE, "GLB, figure", "no mesh that the armature moves", "one", False)
+    farthest_m = max(max(frame.values()) for frame in figure)
+    what = f"GLB, joint farthest from the figure's nearest vertex in {n_frames} frames"
+    return at_most(WHERE, what, CM * farthest_m, FIGURE_CM, "cm")
 
 
 def _export(recording: Path, kind: str) -> None:

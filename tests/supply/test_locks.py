@@ -113,6 +113,12 @@ def test_the_runtime_holds_no_tool_of_the_developers() -> None:
     assert not (tools - wanted - {"packaging"}) & set(pins(RUN))
 
 
+def test_the_debian_package_holds_nothing_that_only_evaluation_needs() -> None:
+    script = (ROOT / "deb" / "build.sh").read_text()
+    assert set(re.findall(r"locks/[\w.]+", script)) == {"locks/run.txt"}
+    assert not {"matplotlib", "ezc3d", "contourpy"} & set(pins(RUN))
+
+
 def test_apis_that_a_major_may_break_have_a_bound_above() -> None:
     bounded = {
         asked.name for asked in _asked(RUN) if any(part.operator == "<" for part in asked.specifier)

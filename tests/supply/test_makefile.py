@@ -183,3 +183,10 @@ def test_what_ci_runs_installs_packages_by_make_alone() -> None:
 def test_each_target_makes_the_environment_it_needs(target: str, environment: str) -> None:
     rules = (ROOT / "Makefile").read_text().splitlines()
     assert any(rule.startswith(f"{target}: {environment} ## ") for rule in rules)
+
+
+def test_dist_builds_what_is_handed_on_of_every_client() -> None:
+    rules = (ROOT / "Makefile").read_text()
+    recipe = rules[rules.index("\ndist:") :].split("\n\n")[0]
+    assert {f"cd clients/{name} && " in recipe for name in ("python", "goalkeeper")} == {True}
+    assert "clients/pack.py dist" in recipe

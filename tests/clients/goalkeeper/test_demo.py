@@ -12,11 +12,12 @@ import psutil
 import pytest
 
 from goalkeeper.app.headless import play_headless
-from goalkeeper.streams.demo_daemon import DemoStream
+from goalkeeper.streams import demo_daemon
+from goalkeeper.streams.demo_daemon import DAEMON, DemoStream, daemon_program
 from goalkeeper.streams.demo_script import SCRIPT, demo_scenario, scenario_toml
 from goalkeeper.streams.person_stream import PersonStream
 from goalkeeper.streams.scripted_shooter import ScriptedShooter
-from mocapd.errors import CannotCreateError
+from mocapd.errors import CannotCreateError, UnavailableError
 from mocapd.sim.scenario import load_scenario
 from tests.outputs.frames import eventually
 from tests.processes import still_runs
@@ -57,6 +58,18 @@ def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:
     (tmp_path / "cache").write_text("a file in its place")
     with pytest.raises(CannotCreateError, match=r"goalkeeper\.toml"):
         DemoStream(tmp_path / "cache")
+
+
+def test_the_daemon_is_of_this_environment_else_the_command_that_is_installed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert daemon_program() == DAEMON
+    monkeypatch.setattr(demo_daemon, "find_spec", lambda _: None)
+    monkeypatch.setattr(demo_daemon.shutil, "which", lambda _: "/opt/mocapd/bin/mocapd")
+    assert "execv('/opt/mocapd/bin/mocapd'" in daemon_program()
+    monkeypatch.setattr(demo_daemon.shutil, "which", lambda _: None)
+    with pytest.raises(UnavailableError, match="small install"):
+        daemon_program()
 
 
 def test_what_the_daemon_prepares_is_said_with_time_and_share(
