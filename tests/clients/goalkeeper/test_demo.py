@@ -65,9 +65,9 @@ def test_the_daemon_is_of_this_environment_else_the_command_that_is_installed(
 ) -> None:
     assert daemon_program() == DAEMON
     monkeypatch.setattr(demo_daemon, "find_spec", lambda _: None)
-    monkeypatch.setattr(demo_daemon.shutil, "which", lambda _: "/opt/mocapd/bin/mocapd")
+    monkeypatch.setattr("shutil.which", lambda _: "/opt/mocapd/bin/mocapd")
     assert "execv('/opt/mocapd/bin/mocapd'" in daemon_program()
-    monkeypatch.setattr(demo_daemon.shutil, "which", lambda _: None)
+    monkeypatch.setattr("shutil.which", lambda _: None)
     with pytest.raises(UnavailableError, match="small install"):
         daemon_program()
 

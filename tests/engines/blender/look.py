@@ -9,6 +9,7 @@ Blender's world has +Z up, mocapd's +Y: joints are written in mocapd's.
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import bpy
 from mathutils.kdtree import KDTree
@@ -28,7 +29,7 @@ first = armature.animation_data.action.frame_range[0]
 skins = [one for one in scene.objects if one.type == "MESH" and one.find_armature() is armature]
 
 
-def nearest_m(joints, graph):
+def nearest_m(joints: dict[str, Any], graph: Any) -> dict[str, float]:
     """How far each joint is from the figure [m]."""
     skin = skins[0].evaluated_get(graph)
     vertices = skin.to_mesh().vertices
