@@ -107,7 +107,7 @@ def test_the_processes_end_with_who_began_them(tmp_path: Path) -> None:
         "import os, time\n"
         "from mocapd.app.daemon.task_pool import Task, run_tasks\n"
         "def work(_):\n"
-        "    print(os.getpid(), flush=True)\n"
+        "    os.write(1, b'%d\\n' % os.getpid())\n"
         "    time.sleep(600)\n"
         "run_tasks([Task('all', 1.0, work), Task('all', 1.0, work)], 2, lambda _: None)\n"
     )
