@@ -114,8 +114,8 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
                     control.preparing(text)
                     service.preparing = text
 
-                early = EarlyStart(first.preparation, change, tell)
-                hooks = (change, early, control, Supervision(notifier))
+                early = [EarlyStart(first.preparation, change, tell)] if first.is_early else []
+                hooks = (change, *early, control, Supervision(notifier))
                 code = run_daemon(service, signals, hint, hooks, control.what_is_prepared)
     except SystemExit as end:  # a signal ended it during the preparation of the first session
         code = end.code if isinstance(end.code, int) else 0

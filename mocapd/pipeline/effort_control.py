@@ -20,21 +20,24 @@ class EffortControlParams:
 
     late_load: above it the machine is late; it is also late if more than `skipping` of the frame sets are followed by a
     skipped one at skip_load or more (below, the cause is elsewhere). After fall_s of that the effort falls.
-    room_load: below it the effort rises after rise_s. A rise that makes the machine late within fails_s has failed: the
-    next attempt is after retry_s, doubled at each failure up to most_retry_s.
-    smooth_s, skips_s: averaging times of load and skips; hiccup: largest load counted for one frame set.
+    room_load: with a mean load below it the effort rises after rise_s. A step of effort costs a quarter more time: this
+    leads to just below late_load. A rise that makes the machine late within fails_s has failed: the next attempt is
+    after retry_s, doubled at each failure up to most_retry_s.
+    smooth_s, mean_s, skips_s: averaging times of load, of mean load and of skips; hiccup: largest load counted for one
+    frame set.
     """
 
     late_load: float = 0.92
     skipping: float = 0.05
     skip_load: float = 0.6
     fall_s: float = 0.75
-    room_load: float = 0.55
+    room_load: float = 0.72
     rise_s: float = 5.0
     fails_s: float = 20.0
     retry_s: float = 60.0
     most_retry_s: float = 960.0
     smooth_s: float = 0.5
+    mean_s: float = 2.5
     skips_s: float = 2.0
     hiccup: float = 2.5
 
@@ -56,7 +59,8 @@ class EffortControl:
     def _restart(self) -> None:
         """Reset the load estimate after a change of effort."""
         p = self._params
-        self._load, self._skips = 0.5 * (p.room_load + p.late_load), 0.0
+        self._load, self._mean_load = 0.5 * (p.room_load + p.late_load), p.room_load
+        self._skips = 0.0
         self._late_since_ns: int | None = None
         self._room_since_ns: int | None = None
 
@@ -78,16 +82,17 @@ class EffortControl:
     def _measure(self, gap_s: float, skipped: bool, busy_s: float) -> None:
         p = self._params
         before_s = gap_s if self._period_s is None else self._period_s
-        share = 1.0 - math.exp(-gap_s / p.smooth_s)
+        share = _share(gap_s, p.smooth_s)
         self._period_s = before_s + share * (gap_s - before_s)
         load = min(busy_s / self._period_s, p.hiccup)
         self._load += share * (load - self._load)
-        self._skips += (1.0 - math.exp(-gap_s / p.skips_s)) * (float(skipped) - self._skips)
+        self._mean_load += _share(gap_s, p.mean_s) * (load - self._mean_load)
+        self._skips += _share(gap_s, p.skips_s) * (float(skipped) - self._skips)
 
     def _decide(self, now_ns: int) -> None:
         p, at = self._params, _ORDER.index(self.effort)
         skips = self._skips > p.skipping and self._load >= p.skip_load
-        is_late, has_room = self._load > p.late_load or skips, self._load < p.room_load
+        is_late, has_room = self._load > p.late_load or skips, self._mean_load < p.room_load
         self._late_since_ns = _since(self._late_since_ns, is_late, now_ns)
         self._room_since_ns = _since(self._room_since_ns, has_room and not skips, now_ns)
         if _lasted_s(self._rose_ns, now_ns) > p.fails_s:
@@ -105,6 +110,11 @@ class EffortControl:
     def _change(self, effort: Effort) -> None:
         self.effort = effort
         self._restart()
+
+
+def _share(gap_s: float, over_s: float) -> float:
+    """Weight of the newest value in an average over so long."""
+    return 1.0 - math.exp(-gap_s / over_s)
 
 
 def _since(before_ns: int | None, holds: bool, now_ns: int) -> int | None:

@@ -22,6 +22,7 @@ _REST_S, _REST_WARNED_S = 900.0, 120.0  # from one comparison to the next
 _MOST_WAITING = 400  # small pictures: the thread is behind
 _PAUSE_S = 0.25
 _NICE = 15
+_BREATH_S = 0.02  # between looks of the network: in a quarter of the time, so that tracking is not late
 _SPEED_M_S = 0.5  # of joints, as people move
 
 
@@ -91,7 +92,9 @@ class ViewWatch:
     def _compare(self) -> CheckResult | None:
         """Collects for half a minute and compares; None after `stop`."""
         assert self._rig is not None
-        check = CaptureCheck(self._rig, self._stature_m)
+        check = CaptureCheck(
+            self._rig, self._stature_m, breathe=lambda: self._stopping.wait(_BREATH_S)
+        )
         first_s: float | None = None
         while not self._stopping.wait(_PAUSE_S):
             t_s = 0.0

@@ -8,13 +8,14 @@ from mocapd.service.service import Snapshot
 
 
 class EarlyStart:
-    """See LoopHook. Reports the remaining preparations, for users; an empty text at the end."""
+    """See LoopHook, of an early session. Reports the remaining preparations, for users; an empty text at the end, also
+    where that came before the first tick."""
 
     def __init__(
         self, preparation: Preparation, change: SessionChange, report: Callable[[str], None]
     ) -> None:
         self._preparation, self._change, self._report = preparation, change, report
-        self._waits = not preparation.is_over
+        self._waits = True
 
     def on_tick(self, _snapshot: Snapshot) -> None:
         """See LoopHook."""

@@ -23,11 +23,12 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FirstSession:
-    """`session` and its configuration. preparation: still running for an early session, else over."""
+    """`session` and its configuration. is_early: the configured one follows when `preparation` is over."""
 
     session: Session
     config: Config
     preparation: Preparation
+    is_early: bool
 
 
 def first_session(
@@ -74,7 +75,7 @@ def first_session(
         raise
     notifier.restore_watchdog()
     on_progress("")
-    return FirstSession(session, config, preparation)
+    return FirstSession(session, config, preparation, is_early)
 
 
 def _open_in_thread(plan: SessionPlan, is_early: bool) -> Session:

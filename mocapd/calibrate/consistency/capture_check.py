@@ -4,7 +4,7 @@ Stores little: pictures of 320 px, 15 a second, during movement. With a single c
 stand upright.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -84,7 +84,14 @@ class _CameraBuffer:
 class CaptureCheck:
     """Collects pictures and judges them; for one thread."""
 
-    def __init__(self, rig: Rig, stature_m: float | None = None) -> None:
+    def __init__(
+        self,
+        rig: Rig,
+        stature_m: float | None = None,
+        breathe: Callable[[], object] = bool,
+    ) -> None:
+        """breathe: called every few milliseconds of `result`, where others need the processor."""
+        self._breathe = breathe
         self._buffers = {camera.name: _CameraBuffer(camera) for camera in rig.cameras}
         self._stature_m = stature_m
 
@@ -199,7 +206,7 @@ class CaptureCheck:
             for low, high in pairwise(edges)
         ]
         chosen = sorted(np.argsort(moved)[::-1][:_STRETCHES])
-        finder = PersonFinder()
+        finder = PersonFinder(self._breathe)
         works = [
             WorkPictures(np.array(buffer.times_s), np.stack(buffer.pictures), buffer.smaller)
             for buffer in there

@@ -4,7 +4,7 @@ The heatmap network needs a crop around a person. Candidates are foreground or m
 the joints. Rotated pictures are rotated upright first: the orientation of a person is a result, not an assumption.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import cv2
@@ -105,8 +105,9 @@ def shrink(picture: Bytes) -> tuple[Bytes, float]:
 class PersonFinder:
     """Finds people in pictures; has the network's buffers, so one thread only."""
 
-    def __init__(self) -> None:
-        self._network = JointNetwork()
+    def __init__(self, breathe: Callable[[], object] = bool) -> None:
+        """breathe: called before each look of the network, a few milliseconds long; a raised error ends the search."""
+        self._network, self._breathe = JointNetwork(), breathe
 
     def people(
         self, work: WorkPictures, room: ViewedRoom, most: int, turns: Sequence[int]
@@ -177,6 +178,7 @@ class PersonFinder:
         self, picture: Bytes, room: ViewedRoom, side: float, middle: Floats
     ) -> tuple[Floats, DetectedJoints]:
         """Joints (J,2) in a picture's pixels, in the crop of this side about this middle."""
+        self._breathe()
         scale = INPUT_PX / side
         corner = INPUT_PX / 2 - 0.5 - scale * middle
         M = np.array([[scale, 0.0, corner[0]], [0.0, scale, corner[1]]])

@@ -123,5 +123,12 @@ def test_the_whole_tracker_is_asked_for_once_when_all_is_prepared() -> None:
         early.on_tick(None)  # type: ignore[arg-type]
     assert change.asked == [PREPARED]
     assert told[-1] == ""
-    EarlyStart(Preparation(None), change, told.append).on_tick(None)  # type: ignore[arg-type]
+
+
+def test_the_whole_tracker_is_asked_for_where_the_rest_was_ready_before_the_early_session() -> None:
+    """As after an upgrade, with all kernels kept."""
+    change = Change()
+    early = EarlyStart(Preparation(None), change, lambda _: None)  # type: ignore[arg-type]
+    for _ in range(3):
+        early.on_tick(None)  # type: ignore[arg-type]
     assert change.asked == [PREPARED]
