@@ -14,6 +14,7 @@ from lab.simulated.ring_plan import ring_plan
 from lab.simulated.session_plan import PlannedSession, plan
 from mocapd.assets import asset_path
 from mocapd.errors import CannotCreateError, ConfigError, InputError
+from mocapd.file_lock import one_at_a_time
 from mocapd.session.tracker_setup import Progress
 from mocapd.sim.film import film_key
 from mocapd.sim.scenario import Scenario, load_scenario
@@ -63,7 +64,11 @@ def recorded(sessions: list[PlannedSession], cache_dir: Path, progress: Progress
 
     Raises CannotCreateError.
     """
-    return [_recorded(session, cache_dir / "simulated", progress) for session in sessions]
+    folder, out = cache_dir / "simulated", list[Path]()
+    for session in sessions:
+        with one_at_a_time(folder, f"{session.name}.lock"):  # another gate may record it, too
+            out.append(_recorded(session, folder, progress))
+    return out
 
 
 def check_suits(tracker: str, sessions: list[PlannedSession], recordings: list[Path]) -> None:

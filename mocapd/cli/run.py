@@ -77,7 +77,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
     from mocapd.app.daemon.daemon_page import DaemonPage
     from mocapd.app.daemon.early_start import EarlyStart
     from mocapd.app.daemon.initial_session import first_session
-    from mocapd.app.daemon.main_loop import END_S, Signals, end_despite_work, run_daemon
+    from mocapd.app.daemon.main_loop import END_S, LoopHook, Signals, end_despite_work, run_daemon
     from mocapd.app.daemon.notifier import Notifier
     from mocapd.app.daemon.session_change import SessionChange
     from mocapd.app.daemon.supervision import Supervision
@@ -114,8 +114,9 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
                     control.preparing(text)
                     service.preparing = text
 
-                early = [EarlyStart(first.preparation, change, tell)] if first.is_early else []
-                hooks = (change, *early, control, Supervision(notifier))
+                hooks: list[LoopHook] = [change, control, Supervision(notifier)]
+                if first.is_early:
+                    hooks.append(EarlyStart(first.preparation, change, tell))
                 code = run_daemon(service, signals, hint, hooks, control.what_is_prepared)
     except SystemExit as end:  # a signal ended it during the preparation of the first session
         code = end.code if isinstance(end.code, int) else 0

@@ -22,7 +22,7 @@ _REST_S, _REST_WARNED_S = 900.0, 120.0  # from one comparison to the next
 _MOST_WAITING = 400  # small pictures: the thread is behind
 _PAUSE_S = 0.25
 _NICE = 15
-_BREATH_S = 0.02  # between looks of the network: in a quarter of the time, so that tracking is not late
+_BREATH_S = 0.02  # between two looks of the network: it takes a quarter of a processor
 _SPEED_M_S = 0.5  # of joints, as people move
 
 

@@ -47,9 +47,10 @@ class Filmed:
         return out
 
 
-def film() -> Filmed:
-    """Two cameras of 320x240, one 11 ms behind the other, in steady light."""
+def film(whole: bool = False, count: int = N) -> Filmed:
+    """Two cameras of 320x240, one 11 ms behind the other, in steady light. whole: the person has legs and a head."""
     table = small.table()
+    table["body"] = {**table.get("body", {}), "whole": whole}
     for camera in table["cameras"]:
         camera |= {"size_px": [320, 240], "dropped": 0.0}
     for light in table["lights"]:
@@ -58,10 +59,10 @@ def film() -> Filmed:
     world = World(scenario)
     renderers = camera_renderers(world)
     levels = np.ones(len(table["lights"]))
-    pictures = [{r.camera.name: _still(r.frame(i)) for r in renderers} for i in range(N)]
-    joints = [world.at(renderers[0].exposure_s(i)).joints_m for i in range(N)]
+    pictures = [{r.camera.name: _still(r.frame(i)) for r in renderers} for i in range(count)]
+    joints = [world.at(renderers[0].exposure_s(i)).joints_m for i in range(count)]
     empty = [
-        {r.camera.name: _still(r.picture(None, levels, N + i)) for r in renderers}
+        {r.camera.name: _still(r.picture(None, levels, count + i)) for r in renderers}
         for i in range(10)
     ]
     return Filmed(scenario, renderers, pictures, empty, joints)

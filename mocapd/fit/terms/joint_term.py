@@ -68,19 +68,28 @@ class JointTerm:
                 out[rays.joints] += weight * m2 / (1.0 + m2 / p.robust**2)
         return out
 
-    def off_sds2(self, joints_m: Floats) -> list[Floats]:
-        """By camera, squared Mahalanobis distances of its joints (N,) from their rays, of a body at joints_m (J,3)."""
-        return [_mahalanobis2(rays, joints_m)[0] for rays in self.rays]
+    def worst_off_sds2(self, joints_m: Floats) -> float:
+        """Of a body at joints_m (J,3), the median squared Mahalanobis distance of its joints from their rays, in the camera
+        where that is largest."""
+        return max(float(np.median(_mahalanobis2(rays, joints_m)[0])) for rays in self.rays)
 
     def median_spreads_m(self, least_joints: int) -> list[float]:
         """Of each camera, the median over its joints of the standard deviation of their places across the ray [m]; inf with
         fewer than least_joints keypoints."""
-        out: list[float] = []
+        return [
+            float(np.median(_spreads_m(rays))) if len(rays.joints) >= least_joints else np.inf
+            for rays in self.rays
+        ]
+
+    def largest_spread_m(self, joints: Sequence[int]) -> float:
+        """The largest standard deviation of these joints' places across the ray in any camera [m]; inf where a camera has no
+        keypoint of one."""
+        out = 0.0
         for rays in self.rays:
-            xx, xy, yy = rays.information.T
-            enough = len(rays.joints) >= least_joints
-            spreads_m = np.sqrt(0.5 * (xx + yy) / (xx * yy - xy * xy))
-            out.append(float(np.median(spreads_m)) if enough else np.inf)
+            of = np.isin(rays.joints, joints)
+            if of.sum() < len(joints):
+                return np.inf
+            out = max(out, float(_spreads_m(rays)[of].max()))
         return out
 
     def places_m(self, hips_m: Floats) -> Floats:
@@ -137,6 +146,12 @@ class JointTerm:
                 plain(posed), H, b,
             )  # fmt: skip
         return cost
+
+
+def _spreads_m(rays: JointRays) -> Floats:
+    """Standard deviation (J,) of each joint's place across the ray [m]."""
+    xx, xy, yy = rays.information.T
+    return np.asarray(np.sqrt(0.5 * (xx + yy) / (xx * yy - xy * xy)))
 
 
 def _mahalanobis2(rays: JointRays, joints_m: Floats) -> tuple[Floats, Floats]:

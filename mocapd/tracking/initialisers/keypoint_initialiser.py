@@ -156,7 +156,7 @@ class KeypointInitialiser:
             person,
             shadows,
             max(joints.median_spreads_m(p.least_joints)),
-            max(float(np.median(one)) for one in joints.off_sds2(joints_m)),
+            joints.worst_off_sds2(joints_m),
             apart_m,
             float(joints_m[:, 1].min()),
         )

@@ -157,3 +157,8 @@ class ClothesParams:
     guided_joint_after_s: float = 1.0  # since the legs were found
     guided_sd_m: float = 0.01
     guided_sd_rad: float = 0.03
+
+    # the first legs below a trunk from the shirt
+    first_keypoints_s: float = 9 / 30  # between two attempts by keypoints,
+    first_silhouettes_s: float = 3 / 30  # and by silhouettes: no body is uncovered within a frame
+    first_spread_m: float = 0.12  # of knees and ankles: seen up to 0.10, behind a desk from 0.18

@@ -22,6 +22,7 @@ from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.confirmed_arms import confirmed_arms
+from mocapd.tracking.cues.clothes.first_legs import FirstLegs
 from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
 from mocapd.tracking.cues.clothes.region_merge import RegionSolverCache
 from mocapd.tracking.cues.clothes.regions import Region, silhouette_labels
@@ -86,6 +87,7 @@ class ClothesSolver:
         self.silhouettes = Fitter(model, silhouette_labels(model), rig.cameras, scales, p.fit, each)
         self.terms = PoseTerms(self.model, len(rig.cameras), p)
         self.cameras = CameraViews(self.fitter, p)
+        self._first_legs = FirstLegs(self.silhouettes, self.terms, self.appearance, self.cameras, p)
         self._hypotheses = HypothesisTests(p)
         self._feet = PlantedFeet(self.model.rest_m, p.feet)
         self.work = OptionalWork()
@@ -215,7 +217,10 @@ class ClothesSolver:
         dt_s = NEW_BODY_PRIOR_S if is_new else dt_s
         trunk_prior = self._trunk_prior(state, dt_s)
         if not cameras.has_appearance:
-            return self._fit_silhouette(start, last, dt_s, trunk_prior, iterations, ticks)
+            cameras.mark_body(start)
+            cameras.renew_before(self.searches_everywhere(ticks))
+            found = self._first_legs.find(start, dt_s, trunk_prior, iterations, is_new, ticks)
+            return None if found is None else self._estimate(found, last, dt_s)
         if observed is None:
             views, rays = cameras.prepare(start, self.searches_everywhere(ticks), no_detection)
             observed = ClothesObservation(start, views, self.terms.joints.term(self.model, rays))
@@ -264,29 +269,6 @@ class ClothesSolver:
             terms=self.terms.measure(fitter, body, views, frames, ticks.frame_index),
         )  # fmt: skip
         return self._estimate(ScoredFit(fit, views, ()), None, NEW_BODY_PRIOR_S)
-
-    def _fit_silhouette(
-        self,
-        start: MotionState,
-        last: MotionState | None,
-        dt_s: float,
-        trunk_prior: Floats,
-        iterations: int,
-        ticks: Ticks,
-    ) -> ClothesEstimate | None:
-        """Fits a person without an appearance model to the foreground, then learns the appearance."""
-        p, cameras = self.params, self.cameras
-        cameras.mark_body(start)
-        cameras.renew_before(self.searches_everywhere(ticks))
-        views = cameras.silhouettes(start)
-        if not views:
-            return None
-        fit = self.silhouettes.fit(
-            start, views, dt_s, iterations, fine=1, motion=trunk_prior, terms=(self.terms.floor,)
-        )  # fmt: skip
-        if fit.explained >= p.learn_explained:
-            self.appearance.learn_first(fit.state, cameras)
-        return self._estimate(ScoredFit(fit, views, ()), last, dt_s)
 
     def _planted(self) -> tuple[Term, ...]:
         """The term that holds planted feet."""

@@ -1,0 +1,60 @@
+"""The first legs of a wearer of the shirt who is in view from the start, and has not moved."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mocapd.body.skeleton import INDEX
+from mocapd.geometry.camera_model import project
+from mocapd.shirt.pose_database.database import PoseDatabase
+from mocapd.sim.setup import setup_of
+from mocapd.tracking.tracker_inputs import wearer_shape
+from mocapd.types import BodyState, FrameSet
+from tests.sim.simulated_calibration import calibration_of_setup
+from tests.tracking.profiles import auto_tracker
+from tests.tracking.shirt_film import Filmed, film
+from tests.tracking.stepping import Stepping
+
+pytestmark = pytest.mark.kernels
+
+COUNT = 15
+LEGS = [INDEX[side + bone] for side in ("left", "right") for bone in ("LowerLeg", "Foot")]
+
+
+@pytest.fixture(scope="module")
+def filmed() -> Filmed:
+    return film(whole=True, count=COUNT)
+
+
+def bodies(filmed: Filmed, database: PoseDatabase, sets: list[FrameSet]) -> list[BodyState]:
+    known = calibration_of_setup(setup_of(filmed.scenario, filmed.renderers))
+    tracker = Stepping(auto_tracker(known, database), wearer_shape(known))
+    return [tracker.step(one).body for one in sets]
+
+
+def test_they_are_found_at_once(filmed: Filmed, pose_database: PoseDatabase) -> None:
+    found = bodies(filmed, pose_database, filmed.frame_sets(filmed.pictures))
+    assert found[-1].tracker == "shirt+clothes"
+    assert found[-1].joints_m is not None
+    off_m = np.linalg.norm(found[-1].joints_m - filmed.joints_m[-1], axis=1)[LEGS]
+    assert off_m.max() < 0.12
+
+
+def test_behind_a_table_nobody_claims_them(filmed: Filmed, pose_database: PoseDatabase) -> None:
+    def hidden(one: FrameSet) -> FrameSet:
+        frames = {}
+        for renderer in filmed.renderers:
+            name = renderer.camera.name
+            pixels = one.frames[name].pixels.copy()
+            pixels[tops[name] :] = (60, 90, 130)
+            frames[name] = replace(one.frames[name], pixels=pixels)
+        return replace(one, frames=frames)
+
+    knees_m = filmed.joints_m[0][LEGS[::2]]
+    tops = {
+        r.camera.name: int(project(r.camera, knees_m)[:, 1].min()) - 15 for r in filmed.renderers
+    }
+    found = bodies(filmed, pose_database, [*map(hidden, filmed.frame_sets(filmed.pictures))])
+    assert {body.tracker for body in found[5:]} == {"shirt"}
+    assert not found[-1].confidence[LEGS].any()
