@@ -81,16 +81,12 @@ class JointTerm:
             for rays in self.rays
         ]
 
-    def largest_spread_m(self, joints: Sequence[int]) -> float:
-        """The largest standard deviation of these joints' places across the ray in any camera [m]; inf where a camera has no
-        keypoint of one."""
-        out = 0.0
+    def cameras_sure_of(self, joints: Sequence[int], most_m: float) -> Ints:
+        """Of each joint, in how many cameras its keypoint is known to most_m [m] across the ray, by standard deviation."""
+        sure = np.zeros(N_JOINTS, np.int64)
         for rays in self.rays:
-            of = np.isin(rays.joints, joints)
-            if of.sum() < len(joints):
-                return np.inf
-            out = max(out, float(_spreads_m(rays)[of].max()))
-        return out
+            sure[rays.joints] += _spreads_m(rays) <= most_m
+        return sure[list(joints)]
 
     def places_m(self, hips_m: Floats) -> Floats:
         """Keypoint places (J,3) of a body with its hips at hips_m (3,), averaged over the cameras; NaN without one."""

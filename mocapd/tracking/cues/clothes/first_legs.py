@@ -16,6 +16,7 @@ from mocapd.tracking.hypotheses.base import ScoredFit
 from mocapd.tracking.ticks import Ticks
 from mocapd.types import Floats
 
+_CAMERAS = 2  # that are sure of knees and ankles
 _LEGS = [INDEX[side + bone] for side in SIDES for bone in ("LowerLeg", "Foot")]
 
 
@@ -68,7 +69,7 @@ class FirstLegs:
     def _by_keypoints(
         self, start: MotionState, dt_s: float, trunk_prior: Floats, iterations: int
     ) -> ScoredFit | None:
-        """By keypoints alone, then by the appearance learned from that; None if a leg's are unsure in any camera."""
+        """By keypoints alone, then by the appearance learned from that; None if a leg's are unsure."""
         cameras, floor = self._cameras, self._terms.floor
         pose = self._pose_by_keypoints(start, dt_s, trunk_prior)
         if pose is None:
@@ -90,10 +91,10 @@ class FirstLegs:
         for _ in range(p.looks):
             detect = self._terms.joints.detector(fitter, pose, cameras)
             found = self._terms.joints.term(fitter.model, map(detect, cameras.present))
-            if not found or len(found[0].rays) < len(cameras.present):
+            if not found:
                 return None
             joints = found[0]
-            if joints.largest_spread_m(_LEGS) > self._params.first_spread_m:
+            if joints.cameras_sure_of(_LEGS, self._params.first_spread_m).min() < _CAMERAS:
                 return None
             held = (self._terms.floor, joints.trusting)
             pose = fitter.fit(start, (), dt_s, p.iterations, motion=trunk_prior, terms=held).state
