@@ -187,7 +187,7 @@ class BodyTracker:
         predicted = predict_state(self._model, state.motion, dt_s, self.params.damping)
         observed = trunk = whole = separate = None
         if clothes is not None:
-            observed = clothes.observe(predicted, state.by_shirt)
+            observed = clothes.observe(predicted, t_ns, state.legs_since_ns, state.by_shirt)
             self.probe("clothes.observe")
         if locator is not None:
             trunk = locator.locate(

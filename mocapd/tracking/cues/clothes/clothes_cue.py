@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from mocapd.clock import seconds
+from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState
@@ -99,19 +99,26 @@ class ClothesCue:
 
     # --- with a body ---
 
-    def observe(self, predicted: MotionState, shirt_carries: bool) -> ClothesObservation | None:
+    def observe(
+        self, predicted: MotionState, t_ns: int, legs_since_ns: int | None, shirt_carries: bool
+    ) -> ClothesObservation | None:
         """Classifies the pictures about the predicted body; None without a background or an appearance model.
 
-        shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then detected less often.
+        shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then detected less often, and not for
+        new legs that silhouettes found.
         """
+        p = self.params
         if self.cameras.are_new or not self.cameras.has_appearance:
             return None
         if shirt_carries and self._skips_legs:
             return None
         if shirt_carries:
-            detects = self._ticks.due(
-                self.params.guided_joints_s * self._solver.work.network, TICK_S
+            is_new = legs_since_ns is None or t_ns - legs_since_ns <= nanoseconds(
+                p.guided_joint_after_s
             )
+            detects = self._ticks.due(
+                p.guided_joints_s * self._solver.work.network, TICK_S
+            ) and not (is_new and not self._solver.first_legs.by_keypoints)
         else:
             detects = self._ticks.alternates(2 * self._solver.work.network, _JOINTS)
         joints, fitter = self._solver.terms.joints, self.fitter

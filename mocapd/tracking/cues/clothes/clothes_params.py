@@ -154,6 +154,7 @@ class ClothesParams:
     guided_iterations: int = 3
     guided_joints_s: float = 3 / 30  # between two keypoint detections
     guided_look_s: float = 4 / 30  # between two updates of one camera's appearance model
+    guided_joint_after_s: float = 1.0  # since the legs were found by silhouettes
     guided_sd_m: float = 0.01
     guided_sd_rad: float = 0.03
 

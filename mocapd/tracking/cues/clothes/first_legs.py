@@ -21,7 +21,7 @@ _LEGS = [INDEX[side + bone] for side in SIDES for bone in ("LowerLeg", "Foot")]
 
 
 class FirstLegs:
-    """Finds them, and teaches the wearer's appearance."""
+    """Finds them, and teaches the wearer's appearance. by_keypoints: keypoints found the last ones."""
 
     def __init__(
         self,
@@ -34,6 +34,11 @@ class FirstLegs:
         """silhouettes: a fitter whose body has one region."""
         self._silhouettes, self._terms, self._params = silhouettes, terms, params
         self._appearance, self._cameras = appearance, cameras
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget how the last ones were found."""
+        self.by_keypoints = False
 
     def find(
         self,
@@ -53,6 +58,7 @@ class FirstLegs:
         if is_new and ticks.due(p.first_keypoints_s):
             found = self._by_keypoints(start, dt_s, trunk_prior, iterations)
             if found is not None:
+                self.by_keypoints = True
                 return found
         if is_new and not ticks.due(p.first_silhouettes_s):
             return None
