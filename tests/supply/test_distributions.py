@@ -111,7 +111,7 @@ def test_installed_its_commands_do_what_they_say(
 def test_installed_the_demo_begins_and_ends_well(
     installed: Installed, elsewhere: dict[str, str], tmp_path: Path
 ) -> None:
-    """As far as to where both of what is made once are being made; that goes on for a minute."""
+    """As far as to where something that is made once is being made; that goes on for a minute."""
     cache = Path(elsewhere["XDG_CACHE_HOME"])
     process = subprocess.Popen(
         [installed.command, "demo", "--set", f"zenoh.port={free_port()}"],
@@ -123,7 +123,7 @@ def test_installed_the_demo_begins_and_ends_well(
         text=True,
     )
     with process:
-        while not {"pose_database.lock", "sim-living_room.lock"} <= {
+        while not {"pose_database.lock", "sim-living_room-beginning.lock"} & {
             p.name for p in cache.rglob("*.lock")
         }:
             if process.poll() is not None:
