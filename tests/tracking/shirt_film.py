@@ -47,10 +47,13 @@ class Filmed:
         return out
 
 
-def film(whole: bool = False, count: int = N) -> Filmed:
-    """Two cameras of 320x240, one 11 ms behind the other, in steady light. whole: the person has legs and a head."""
+def film(stands: bool = False, count: int = N) -> Filmed:
+    """Two cameras of 320x240, one 11 ms behind the other, in steady light. stands: the person has legs and a head, too, and
+    does not move."""
     table = small.table()
-    table["body"] = {**table.get("body", {}), "whole": whole}
+    if stands:
+        table["body"] = {**table.get("body", {}), "whole": True}
+        table["motion"] = {"keyframes": [{"t_s": 0.0, "pose": "relaxed"}]}
     for camera in table["cameras"]:
         camera |= {"size_px": [320, 240], "dropped": 0.0}
     for light in table["lights"]:

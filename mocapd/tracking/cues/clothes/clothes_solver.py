@@ -7,6 +7,7 @@ import numpy as np
 
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import SIDES, full_body, upper_body
+from mocapd.body.skeleton import INDEX
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
@@ -138,7 +139,9 @@ class ClothesSolver:
             views[0] = replace(views[0], depth_m=unseen)
         joints = self.terms.joints
         observed = joints.term(model, map(joints.detector(fitter, body, cameras), cameras.present))
-        terms = (*self.terms.measure(fitter, body, views, frames, 0), *observed)
+        feet = np.array([INDEX["leftFoot"]])
+        planted = PlantedTerm(model, feet, np.zeros((1, 2)), self.params.planted)
+        terms = (*self.terms.measure(fitter, body, views, frames, 0), *observed, planted)
         fit = fitter.fit(body, views, TICK_S, 2, terms=terms)
         predicted_information(
             fit.covariance, body.velocity, 1.0, fitter.prediction_sd, [], self.params.motion

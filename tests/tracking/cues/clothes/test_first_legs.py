@@ -24,7 +24,7 @@ LEGS = [INDEX[side + bone] for side in ("left", "right") for bone in ("LowerLeg"
 
 @pytest.fixture(scope="module")
 def filmed() -> Filmed:
-    return film(whole=True, count=COUNT)
+    return film(stands=True, count=COUNT)
 
 
 def bodies(filmed: Filmed, database: PoseDatabase, sets: list[FrameSet]) -> list[BodyState]:
