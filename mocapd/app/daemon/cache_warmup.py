@@ -136,19 +136,24 @@ def _run_tasks(config: "Config", report: Report) -> bool:
 
     tasks = first_start_tasks(config)
     processes = min(_MOST_PROCESSES, len(os.sched_getaffinity(0)), len(tasks))
-    pace = machine_pace()
-    total_s = pace * (sum(task.seconds for task in tasks) / processes + _OPENING_S)
-    headline = f"compiling the tracker, and making what later starts find: {_about(total_s)}, once"
     with ProgressBars() as bars:
-        bars.begin(headline)
+        has_begun = False
 
         def on_progress(progress: "Progress") -> None:
+            nonlocal has_begun
+            if not has_begun:
+                has_begun = True
+                total = _about(progress.left_s + progress.pace * _OPENING_S)
+                headline = (
+                    f"compiling the tracker, and making what later starts find: {total}, once"
+                )
+                bars.begin(headline)
+                report(headline)
             for what, share in progress.shares.items():
                 bars(what, round(100 * share), 100)
             report(_progress_text(progress))
 
-        report(headline)
-        return run_tasks(tasks, processes, on_progress, pace, lambda: report(_READY))
+        return run_tasks(tasks, processes, on_progress, machine_pace(), lambda: report(_READY))
 
 
 def _about(seconds: float) -> str:

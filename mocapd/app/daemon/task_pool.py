@@ -18,6 +18,7 @@ _REPORT_S = 0.25
 _LATER_NICE = 10
 _TRUSTED_S = 3.0  # of work, after which measured and given pace have equal weight
 _LATER_PACE = 1.5  # of later tasks, relative to the others: a stream runs beside them
+_SPIN_S = 0.25  # in which the processes find out how much of a processor each gets
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +36,12 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """Done shares 0..1 of each kind of work (`Task.what`), by expected seconds; left_s: remaining time [s]."""
+    """Done shares 0..1 of each kind of work (`Task.what`), by expected seconds; left_s: remaining time [s]; pace: time of
+    this machine, as busy as it is, relative to `Task.seconds`."""
 
     shares: dict[str, float]
     left_s: float
+    pace: float
 
 
 @dataclass(slots=True)
@@ -80,10 +83,11 @@ def run_tasks(
     List scheduling by critical path: of the runnable tasks those that are not `is_later` go first, then the one with the
     longest remaining chain. on_first: called when only later tasks remain, which run at low priority. The processes are
     forks: import the tasks' modules before. They end with this process. Call it while the process has one thread.
-    pace: initial estimate of this machine's time relative to `Task.seconds`.
+    pace: initial estimate of this machine's processor time relative to `Task.seconds`; by the clock it takes longer where
+    other programs are busy or a quota holds, which the processes measure first.
     """
     fork = multiprocessing.get_context("fork")
-    way_s, state, workers = _ways(tasks), _State(tasks, pace), []
+    way_s, workers = _ways(tasks), list[_Worker]()
     try:
         for _ in range(min(processes, len(tasks))):
             here, there = fork.Pipe()
@@ -91,6 +95,11 @@ def run_tasks(
             child.start()
             there.close()
             workers.append(_Worker(child, here))
+        try:
+            received = [float(worker.pipe.recv()) for worker in workers]
+        except EOFError:
+            return False
+        state = _State(tasks, pace * len(received) / max(sum(received), 1e-3))
         first = {i for i, task in enumerate(tasks) if not task.is_later}
         while len(state.done) < len(tasks):
             if first and first <= state.done:
@@ -169,7 +178,17 @@ def _progress(
             work_s += pace * task.seconds * (1.0 - done)
             chain_s = max(chain_s, pace * (chain - task.seconds * done))
     left_s = max(work_s / max(1, processes), chain_s)
-    return Progress({what: done_s[what] / max(all_s[what], 1e-9) for what in all_s}, left_s)
+    return Progress(
+        {what: done_s[what] / max(all_s[what], 1e-9) for what in all_s}, left_s, paces[False]
+    )
+
+
+def _processor_share() -> float:
+    """Share of a processor that this process gets, 0..1, measured for a moment."""
+    began_s, began_cpu_s = time.monotonic(), time.process_time()
+    while (passed_s := time.monotonic() - began_s) < _SPIN_S:
+        pass
+    return min(1.0, (time.process_time() - began_cpu_s) / passed_s)
 
 
 def _work(pipe: Connection, tasks: Sequence[Task]) -> None:
@@ -180,6 +199,7 @@ def _work(pipe: Connection, tasks: Sequence[Task]) -> None:
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     try:
+        pipe.send(_processor_share())
         niced = False
         while True:
             task = tasks[pipe.recv()]

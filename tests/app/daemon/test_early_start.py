@@ -89,7 +89,7 @@ def test_waiting_ends_when_a_stream_can_begin(
 def test_what_is_done_is_not_listed() -> None:
     told = [
         cache_warmup._progress_text(
-            Progress({"film": share, "compiling": 1.0}, 10.0 - 10.0 * share)
+            Progress({"film": share, "compiling": 1.0}, 10.0 - 10.0 * share, 1.0)
         )
         for share in (0.4, 1.0)
     ]
