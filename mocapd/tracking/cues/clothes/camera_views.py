@@ -148,6 +148,14 @@ class CameraViews:
                 camera.background.forget_body(camera.picture, camera.drawn)
                 camera.may_hold_body = False
 
+    def forget_background(self, state: MotionState) -> None:
+        """Clears the background under a body that was in view when the background was first taken."""
+        self.mark_body(state)
+        for i in self.present:
+            camera = self.each[i]
+            camera.background.forget_body(camera.picture, camera.drawn)
+        self.update_foreground(everywhere=False)
+
     @property
     def are_new(self) -> bool:
         """True if a present camera has no background model yet."""

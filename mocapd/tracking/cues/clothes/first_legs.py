@@ -80,6 +80,7 @@ class FirstLegs:
         pose = self._pose_by_keypoints(start, dt_s, trunk_prior)
         if pose is None:
             return None
+        cameras.forget_background(pose)
         self._appearance.learn_first(pose, cameras)
         views = cameras.classify(pose)
         if not views:
