@@ -81,13 +81,22 @@ def test_steps_that_are_quick_on_average_but_skip_frame_sets_are_too_slow() -> N
 def test_room_for_more_is_used_after_a_while() -> None:
     def step_s(at_s: float, effort: Effort) -> float:
         busy = 3.0 if at_s < 4.0 else 1.0  # another program, which then ends
-        return busy * {FULL: 0.026, SAVING: 0.021, LEAST: 0.017}[effort]
+        return busy * {FULL: 0.020, SAVING: 0.015, LEAST: 0.012}[effort]
 
     found, _ = changes(step_s, 60.0)
     efforts = [effort for _, effort in found]
     assert efforts == [SAVING, LEAST, SAVING, FULL]
     assert found[2][0] > 8.0  # not at once
-    assert found[3][0] < 20.0
+    assert found[3][0] < 16.0
+
+
+def test_full_effort_comes_back_after_a_loaded_start_also_where_it_fills_most_of_the_time() -> None:
+    def step_s(at_s: float, effort: Effort) -> float:
+        return (2.0 if at_s < 1.5 else 1.0) * {FULL: 0.026, SAVING: 0.021, LEAST: 0.017}[effort]
+
+    found, _ = changes(step_s, 60.0)
+    assert [effort for _, effort in found] == [SAVING, FULL]
+    assert found[-1][0] < 12.0
 
 
 def test_more_work_that_failed_is_not_tried_again_soon() -> None:

@@ -106,7 +106,7 @@ class PersonFinder:
     """Finds people in pictures; has the network's buffers, so one thread only."""
 
     def __init__(self, breathe: Callable[[], object] = bool) -> None:
-        """breathe: called before each look of the network, a few milliseconds long; a raised error ends the search."""
+        """breathe: called before each look of the network, which takes a few milliseconds."""
         self._network, self._breathe = JointNetwork(), breathe
 
     def people(
