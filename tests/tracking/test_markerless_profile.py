@@ -1,7 +1,7 @@
 """The profile `markerless` as its users notice it: it starts by itself, follows, and goes when they go."""
 
 from dataclasses import replace
-from itertools import count
+from itertools import count, cycle
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from mocapd.body.skeleton import INDEX
 from mocapd.tracking.base import Track
 from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import FrameSet, Tracking
-from tests.tracking.plain_film import N_EMPTY, PlainFilm, plain_film
+from tests.tracking.plain_film import N_EMPTY, PERIOD_NS, PlainFilm, plain_film
 from tests.tracking.profiles import markerless_tracker
 from tests.tracking.stepping import Stepping
 
@@ -66,6 +66,30 @@ def test_on_a_slow_machine_a_look_goes_on_over_some_frames(film: PlainFilm) -> N
     assert live == list(range(live[0], len(tracks)))
     away = np.array([off_m(tracks[i], film.joints_m[i - N_EMPTY]) for i in live])
     assert np.median(away) < 0.08
+
+
+def test_a_look_that_takes_seconds_does_not_throw_away_whom_it_finds(film: PlainFilm) -> None:
+    """Beside programs that leave it little, the next picture is newer than a track lasts without evidence."""
+    t_ns, looked = film.frames[0].t_ns, False
+
+    def now_ns() -> int:  # read before and after each fit
+        nonlocal t_ns, looked
+        t_ns, looked = t_ns + 50_000_000, True
+        return t_ns
+
+    slow = Stepping(markerless_tracker(film.known, now_ns=now_ns), wearer_shape(film.known))
+
+    def shown(frames: FrameSet) -> Tracking:
+        nonlocal t_ns, looked
+        at = {name: replace(frame, t_ns=t_ns) for name, frame in frames.frames.items()}
+        tracking = slow.step(FrameSet(t_ns, at)).body.tracking
+        t_ns, looked = t_ns + (1_100_000_000 if looked else PERIOD_NS), False
+        return tracking
+
+    assert {shown(one) for one in film.frames[:N_EMPTY]} == {Tracking.LOST}
+    moves = cycle(film.frames[N_EMPTY:] + film.frames[:N_EMPTY:-1])
+    assert any(shown(next(moves)) is Tracking.LIVE for _ in range(1000))
+    assert {shown(next(moves)) for _ in range(20)} == {Tracking.LIVE}
 
 
 def test_who_leaves_is_lost_and_nothing_stays_behind(film: PlainFilm, tracker: Stepping) -> None:

@@ -115,6 +115,7 @@ class PersonSearch:
     def give_up(self) -> None:
         """Cancels the search in progress."""
         self._under_way: Generator[None, None, _Likely | None] | None = None
+        self._earlier: _Likely | None = None  # found in older pictures, to be refitted to the next
 
     def look(self, factors: Floats, information: Floats, t_ns: int) -> Found | None:
         """A person of this shape in the newest pictures, with the cameras that show it; None if none is confirmed yet or
@@ -124,6 +125,11 @@ class PersonSearch:
             return None
         if not self.times.is_due(t_ns):
             return None
+        if self._earlier is not None:
+            earlier = self._earlier
+            self.give_up()
+            self.times.on_attempt(t_ns, to_the_end=True)
+            return self._found(self._as_now(*earlier))
         begins = self._under_way is None
         if self._under_way is None:
             self._update_foreground()
@@ -138,16 +144,20 @@ class PersonSearch:
                 next(self._under_way)
         except StopIteration as end:
             self.give_up()
-            self.times.on_attempt(t_ns, to_the_end=True)
             likeliest: _Likely | None = end.value
-            if likeliest is not None and not begins:
-                likeliest = self._as_now(*likeliest)
-            if likeliest is None:
-                return None
-            self._motion.reset()
-            return likeliest[0], self._names(likeliest[1])
+            if likeliest is None or (begins and self._clock_ns() < until_ns):
+                self.times.on_attempt(t_ns, to_the_end=True)
+                return self._found(likeliest)
+            self._earlier = likeliest
+            return None
         self.times.on_attempt(t_ns, to_the_end=False)
         return None
+
+    def _found(self, likeliest: _Likely | None) -> Found | None:
+        if likeliest is None:
+            return None
+        self._motion.reset()
+        return likeliest[0], self._names(likeliest[1])
 
     def lost_reason(self, t_ns: int) -> LostReason | None:
         """Why no person is found, if known."""
