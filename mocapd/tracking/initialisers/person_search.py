@@ -168,18 +168,21 @@ class PersonSearch:
     ) -> Generator[None, None, _Likely | None]:
         """A whole search of the newest foreground. Yields after each fit, so that a later frame set may continue it."""
         p = self._params
-        fits = []
-        for candidate in self._standing_candidates(False) + self._standing_candidates(True):
-            fit = yield from fit_first_pose(
-                self._silhouettes,
-                candidate.person,
-                candidate.views,
-                factors,
-                information,
-                (self._floor,),
-                p,
-            )
-            fits.append((fit, candidate))
+        fits: list[_Likely] = []
+        for shadows in (False, True):
+            if any(self._is_likely(fit) and fit.explained >= p.accept_explained for fit, _ in fits):
+                break  # nobody's dark clothes were taken for shadows
+            for candidate in self._standing_candidates(shadows):
+                fit = yield from fit_first_pose(
+                    self._silhouettes,
+                    candidate.person,
+                    candidate.views,
+                    factors,
+                    information,
+                    (self._floor,),
+                    p,
+                )
+                fits.append((fit, candidate))
         likely = [one for one in fits if self._is_likely(one[0]) and self._is_person(*one)]
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
