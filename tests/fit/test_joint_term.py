@@ -31,9 +31,14 @@ def seen_at(joints_m: Floats, off: float = 0.0, which: np.ndarray = SEEN) -> lis
     return out
 
 
-def test_rows_are_the_derivatives_of_the_cost() -> None:
+FEET = np.array([INDEX[side + bone] for side in ("left", "right") for bone in ("Foot", "Toes")])
+
+
+@pytest.mark.parametrize(("which", "off"), [(SEEN, 0.002), (FEET, 0.0005)])
+def test_rows_are_the_derivatives_of_the_cost(which: np.ndarray, off: float) -> None:
     local = bent()
-    term = JointTerm(BODY, seen_at(posed(ROOT, local).joints, 0.002), JointTermParams(robust=100.0))
+    seen = seen_at(posed(ROOT, local).joints, off, which)
+    term = JointTerm(BODY, seen, JointTermParams(robust=100.0))
     cost, H, b = system(term, ROOT, local)
     assert cost > 0.0
     assert np.allclose(H, H.T)
@@ -68,6 +73,24 @@ def test_a_body_goes_to_where_its_joints_were_seen() -> None:
     root, there = settled(term, ROOT, local)
     reached = posed(root, there).joints
     assert np.linalg.norm(reached[arm] - goal[arm], axis=1).max() < 0.05
+
+
+@pytest.mark.parametrize("turn_rad", [-2.0, 1.5])
+def test_a_foot_turns_to_where_its_toes_were_seen_wherever_its_ankle_is(turn_rad: float) -> None:
+    """The outlines of a straight leg look alike however it is turned about its length."""
+    local = relaxed()
+    turned = local.copy()
+    turned[INDEX["leftUpperLeg"]] = rotations.multiply(
+        local[INDEX["leftUpperLeg"]], rotations.exp(np.array([0.0, turn_rad, 0.0]))
+    )
+    ankle, toes = INDEX["leftFoot"], INDEX["leftToes"]
+    seen_m = posed(ROOT + [0.0, 0.0, 0.6], local).joints
+    foot_m = seen_m[toes] - seen_m[ankle]
+    root, there = settled(JointTerm(BODY, seen_at(seen_m, 0.0, FEET)), ROOT, turned)
+    reached_m = posed(root, there).joints
+    now_m = reached_m[toes] - reached_m[ankle]
+    away = np.arctan2(now_m[0], now_m[2]) - np.arctan2(foot_m[0], foot_m[2])
+    assert abs(np.remainder(away + np.pi, 2 * np.pi) - np.pi) < 0.2
 
 
 def test_a_joint_that_is_elsewhere_hardly_pulls() -> None:

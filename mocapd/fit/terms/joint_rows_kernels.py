@@ -83,3 +83,33 @@ def pull_at_joints(
         add_row(rows[0], off, depth_weight * weight * depth_information[n] * trust * trust, H, b)
         cost += depth_weight * weight * m2 * trust
     return cost
+
+
+@njit(cache=True, nogil=True)
+def turn_level(
+    first: Ints,
+    second: Ints,
+    apart_m: Array,
+    information: float,
+    articulation: Articulation,
+    posed: PosedJoints,
+    H: Array,
+    b: Array,
+) -> float:
+    """Add two rows for each pair of joints (N,) that pull the second as far from the first as apart_m (N,3) says, along x and
+    z, wherever both are; the cost. information [1/m^2]."""
+    joints = posed[2]
+    row, less = np.empty((2, 3 + 3 * articulation[3].shape[0]))
+    cost, along = 0.0, np.zeros(3)
+    for n in range(first.shape[0]):
+        for axis in range(0, 3, 2):
+            along[:] = 0.0
+            along[axis] = 1.0
+            off = apart_m[n, axis] - joints[second[n], axis] + joints[first[n], axis]
+            joint_row(second[n], along, articulation, posed, row)
+            joint_row(first[n], along, articulation, posed, less)
+            for q in range(row.shape[0]):
+                row[q] -= less[q]
+            add_row(row, off, information, H, b)
+            cost += information * off * off
+    return cost

@@ -1,4 +1,10 @@
-"""Keypoint term: each joint near the ray through its keypoint, at the network's depth relative to the hips."""
+"""Keypoint term: each joint near the ray through its keypoint, at the network's depth relative to the hips, and each foot
+turned as its keypoints are.
+
+A shoe has few pixels, and a straight leg looks the same however it is turned about its length: silhouettes hardly say where
+a foot points. Rays with an outlier's weight do not turn one that points the wrong way; the direction between ankle and toes
+where rays cross does, wherever the foot stands.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -8,13 +14,15 @@ import numpy as np
 
 from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.model import BodyModel
+from mocapd.body.pose_space import SIDES
 from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.fit.terms.joint_rows_kernels import pull_at_joints
+from mocapd.fit.terms.joint_rows_kernels import pull_at_joints, turn_level
 from mocapd.geometry.camera_model import from_camera, to_camera
 from mocapd.types import Camera, Floats, Ints
 
 _NOWHERE = 1e-6 * np.eye(3)  # information of a joint that no camera saw [1/m^2]
+_ANKLES, _TOES = ([INDEX[side + bone] for side in SIDES] for bone in ("Foot", "Toes"))
 _TRUNK = [(INDEX["left" + j], INDEX["right" + j]) for j in ("UpperArm", "UpperLeg")]
 
 
@@ -25,6 +33,8 @@ class JointTermParams:
     weight: float = 4.0  # of a squared Mahalanobis distance [disagreeing pixels]
     robust: float = 3.0  # standard deviations at which a joint has a quarter of its weight
     depth_weight: float = 0.5  # of its depth relative to its place
+    heading_information: float = 5000.0  # of a foot's toes beside its ankle [disagreeing pixels/m^2]
+    heading_sd_m: float = 0.12  # of both where rays cross, at most: adjacent cameras hardly see depth
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -141,7 +151,22 @@ class JointTerm:
                 (p.weight, p.robust, p.depth_weight), rays.camera.R, rays.camera.t_m, plain(m.articulation),
                 plain(posed), H, b,
             )  # fmt: skip
+        ankles, toes, apart_m = self._feet
+        cost += turn_level(
+            ankles, toes, apart_m, p.heading_information, plain(m.articulation), plain(posed), H, b
+        )
         return cost
+
+    @cached_property
+    def _feet(self) -> tuple[Ints, Ints, Floats]:
+        """Ankles (F,) and toes (F,) of the feet whose heading is known, and the vector (F,3) between them [m, world]."""
+        places_m, sd_m = self.crossings
+        known = np.maximum(sd_m[_ANKLES], sd_m[_TOES]) <= self._params.heading_sd_m
+        ankles, toes = np.array(_ANKLES)[known], np.array(_TOES)[known]
+        apart_m, rest_m = places_m[toes] - places_m[ankles], self._model.rest_m
+        length_m = np.linalg.norm(rest_m[toes] - rest_m[ankles], axis=1)
+        apart_m *= (length_m / np.maximum(np.linalg.norm(apart_m, axis=1), 1e-6))[:, None]
+        return ankles, toes, apart_m
 
 
 def _spreads_m(rays: JointRays) -> Floats:
