@@ -8,8 +8,9 @@ from mocapd.fit.motion_state import apply_step
 from mocapd.fit.terms.joint_term import JointRays, JointTerm, JointTermParams
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
-from mocapd.types import Floats
+from mocapd.types import Camera, Floats
 from tests.fit.test_pose_terms import BODY, CAMERAS, ROOT, bent, posed, relaxed, settled, system
+from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
 
@@ -18,10 +19,15 @@ SEEN = np.array(
 )
 
 
-def seen_at(joints_m: Floats, off: float = 0.0, which: np.ndarray = SEEN) -> list[JointRays]:
-    """What both cameras see of some joints, each a little beside."""
+def seen_at(
+    joints_m: Floats,
+    off: float = 0.0,
+    which: np.ndarray = SEEN,
+    cameras: tuple[Camera, ...] = CAMERAS,
+) -> list[JointRays]:
+    """What the cameras see of some joints, each a little beside."""
     out = []
-    for k, camera in enumerate(CAMERAS):
+    for k, camera in enumerate(cameras):
         rng = np.random.default_rng(k)
         there = to_camera(camera, joints_m)
         xy = there[which, :2] / there[which, 2:] + rng.normal(0.0, off, (len(which), 2))
@@ -31,13 +37,17 @@ def seen_at(joints_m: Floats, off: float = 0.0, which: np.ndarray = SEEN) -> lis
     return out
 
 
+CROSSING = tuple(
+    looking_at(name, np.array([x_m, 1.5, 2.0]), np.array([0.0, 0.9, 0.0]))
+    for name, x_m in (("left", -2.0), ("right", 2.0))
+)
 FEET = np.array([INDEX[side + bone] for side in ("left", "right") for bone in ("Foot", "Toes")])
 
 
 @pytest.mark.parametrize(("which", "off"), [(SEEN, 0.002), (FEET, 0.0005)])
 def test_rows_are_the_derivatives_of_the_cost(which: np.ndarray, off: float) -> None:
     local = bent()
-    seen = seen_at(posed(ROOT, local).joints, off, which)
+    seen = seen_at(posed(ROOT, local).joints, off, which, CROSSING if which is FEET else CAMERAS)
     term = JointTerm(BODY, seen, JointTermParams(robust=100.0))
     cost, H, b = system(term, ROOT, local)
     assert cost > 0.0
@@ -75,22 +85,43 @@ def test_a_body_goes_to_where_its_joints_were_seen() -> None:
     assert np.linalg.norm(reached[arm] - goal[arm], axis=1).max() < 0.05
 
 
-@pytest.mark.parametrize("turn_rad", [-2.0, 1.5])
-def test_a_foot_turns_to_where_its_toes_were_seen_wherever_its_ankle_is(turn_rad: float) -> None:
-    """The outlines of a straight leg look alike however it is turned about its length."""
+def with_leg_turned(turn_rad: float) -> Floats:
+    """The left one, about its length: its outline stays as it is."""
     local = relaxed()
-    turned = local.copy()
-    turned[INDEX["leftUpperLeg"]] = rotations.multiply(
-        local[INDEX["leftUpperLeg"]], rotations.exp(np.array([0.0, turn_rad, 0.0]))
-    )
+    turn = rotations.exp(np.array([0.0, turn_rad, 0.0]))
+    local[INDEX["leftUpperLeg"]] = rotations.multiply(local[INDEX["leftUpperLeg"]], turn)
+    return local
+
+
+@pytest.mark.parametrize("turn_rad", [-2.6, -1.0, 1.5])
+def test_a_foot_turns_to_where_its_toes_were_seen_wherever_it_stands(turn_rad: float) -> None:
+    local, turned = relaxed(), with_leg_turned(turn_rad)
     ankle, toes = INDEX["leftFoot"], INDEX["leftToes"]
-    seen_m = posed(ROOT + [0.0, 0.0, 0.6], local).joints
-    foot_m = seen_m[toes] - seen_m[ankle]
-    root, there = settled(JointTerm(BODY, seen_at(seen_m, 0.0, FEET)), ROOT, turned)
-    reached_m = posed(root, there).joints
-    now_m = reached_m[toes] - reached_m[ankle]
-    away = np.arctan2(now_m[0], now_m[2]) - np.arctan2(foot_m[0], foot_m[2])
-    assert abs(np.remainder(away + np.pi, 2 * np.pi) - np.pi) < 0.2
+    seen_m = posed(ROOT + [0.0, 0.0, 0.4], local).joints
+    term = JointTerm(BODY, seen_at(seen_m, 0.0, FEET, CROSSING))
+    root, there = settled(term, ROOT, turned)
+    foot_m, now_m = (
+        joints_m[toes] - joints_m[ankle] for joints_m in (seen_m, posed(root, there).joints)
+    )
+    assert abs(np.cross(foot_m, now_m)[1]) < 0.3 * foot_m @ now_m
+    # more than what a shoe's pixels say against it
+    assert system(term, ROOT, turned)[0] - system(term, ROOT, local)[0] > 80.0
+
+
+def test_feet_that_one_camera_saw_are_not_turned() -> None:
+    seen = seen_at(posed(ROOT, relaxed()).joints, 0.0, FEET, CROSSING)
+    both, alone = (
+        system(JointTerm(BODY, rays), ROOT, with_leg_turned(1.5))[0] for rays in (seen, seen[:1])
+    )
+    assert alone < 72.0 < 0.4 * both  # two outliers at most: the toes' place and their depth
+
+
+def test_rays_of_two_cameras_cross_at_the_joint() -> None:
+    there_m = posed(ROOT, relaxed()).joints
+    places_m, sd_m = JointTerm(BODY, seen_at(there_m, 0.0, FEET, CROSSING)).crossings
+    assert places_m[FEET] == pytest.approx(there_m[FEET], abs=1e-4)
+    assert (sd_m[FEET] < 0.3).all()
+    assert np.isinf(np.delete(sd_m, FEET)).all()
 
 
 def test_a_joint_that_is_elsewhere_hardly_pulls() -> None:

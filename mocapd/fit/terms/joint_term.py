@@ -33,8 +33,8 @@ class JointTermParams:
     weight: float = 4.0  # of a squared Mahalanobis distance [disagreeing pixels]
     robust: float = 3.0  # standard deviations at which a joint has a quarter of its weight
     depth_weight: float = 0.5  # of its depth relative to its place
-    heading_information: float = 5000.0  # of a foot's toes beside its ankle [disagreeing pixels/m^2]
-    heading_sd_m: float = 0.12  # of both where rays cross, at most: adjacent cameras hardly see depth
+    heading_information: float = 5000.0  # of toes beside their ankle [disagreeing pixels/m^2]
+    heading_sd_m: float = 0.12  # of both, at most: adjacent cameras hardly see depth
 
 
 @dataclass(frozen=True, slots=True, eq=False)

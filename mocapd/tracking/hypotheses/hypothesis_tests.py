@@ -3,7 +3,6 @@
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.hypotheses.base import HypothesisContext, PoseHypothesis, ScoredFit
-from mocapd.tracking.hypotheses.foot_heading import FootHeading
 from mocapd.tracking.hypotheses.hull_ends import HullEnds
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 from mocapd.tracking.hypotheses.limb_poses import ArmPoses, LegPoses
@@ -16,7 +15,6 @@ class HypothesisTests:
         self._always: dict[str, PoseHypothesis] = {
             "hull_ends": HullEnds(params.hull_ends, params.limbs),
             "keypoint_poses": KeypointPoses(params.keypoint_poses),
-            "foot_heading": FootHeading(params.foot_heading),
         }
         self._searched: dict[str, PoseHypothesis] = {
             "arm_poses": ArmPoses(),

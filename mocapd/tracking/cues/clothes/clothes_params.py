@@ -9,7 +9,6 @@ from mocapd.fit.terms.planted_term import PlantedParams
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
 from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
-from mocapd.tracking.hypotheses.foot_heading import FootHeadingParams
 from mocapd.tracking.hypotheses.hull_ends import ReachingParams
 from mocapd.tracking.hypotheses.keypoint_starts import KeypointPoseParams
 from mocapd.tracking.planted_feet import PlantedFeetParams
@@ -118,7 +117,6 @@ class ClothesParams:
     depths: StereoDepthParams = field(default_factory=StereoDepthParams)
     joints: KeypointDetectionParams = field(default_factory=KeypointDetectionParams)
     keypoint_poses: KeypointPoseParams = field(default_factory=KeypointPoseParams)
-    foot_heading: FootHeadingParams = field(default_factory=FootHeadingParams)
     hull_ends: ReachingParams = field(default_factory=ReachingParams)
     distances: StereoMatchParams = field(
         default_factory=lambda: StereoMatchParams(points=10, leg_points=24)
