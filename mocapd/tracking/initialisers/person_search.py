@@ -168,9 +168,9 @@ class PersonSearch:
     ) -> Generator[None, None, _Likely | None]:
         """A whole search of the newest foreground. Yields after each fit, so that a later frame set may continue it."""
         p = self._params
-        fits: list[_Likely] = []
+        likely: list[_Likely] = []
         for shadows in (False, True):
-            if any(self._is_likely(fit) and fit.explained >= p.accept_explained for fit, _ in fits):
+            if any(fit.explained >= p.accept_explained for fit, _ in likely):
                 break  # nobody's dark clothes were taken for shadows
             for candidate in self._standing_candidates(shadows):
                 fit = yield from fit_first_pose(
@@ -182,8 +182,8 @@ class PersonSearch:
                     (self._floor,),
                     p,
                 )
-                fits.append((fit, candidate))
-        likely = [one for one in fits if self._is_likely(one[0]) and self._is_person(*one)]
+                if self._is_likely(fit) and self._is_person(fit, candidate):
+                    likely.append((fit, candidate))
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
             found = yield from self._by_keypoints.look(factors, information)
