@@ -30,7 +30,7 @@ from mocapd.tracking.ticks import TickClock
 from mocapd.tracking.track_state import BodyShapeEstimate, TrackState
 from mocapd.tracking.tracking_state import TrackingState, TrackingStateParams
 from mocapd.tracking.trunk_and_legs import freeze_legs, join_bodies, replace_upper_body
-from mocapd.types import BodyState, FrameSet, Rig, Tracking
+from mocapd.types import BodyState, Floats, FrameSet, Rig, Tracking
 
 _MAX_STATE_AGE_S = 1.0  # an older state predicts nothing; a busy machine may skip many frames
 
@@ -223,7 +223,7 @@ class BodyTracker:
         since_ns = t_ns if state.legs_since_ns is None else state.legs_since_ns
         updated = TrackState(
             t_ns, whole.motion, whole.cameras, trunk.fit if trunk else None, whole.fit, t_ns, since_ns, whole.changed,
-            state.taught_s,
+            state.taught_s, off_keypoints_m=_newest_off_m(state, whole),
         )  # fmt: skip
         return updated, CueEstimates(trunk, whole)
 
@@ -268,7 +268,7 @@ class BodyTracker:
             names, changed = (*names, *lower.cameras), (*changed, *lower.changed)
         updated = TrackState(
             t_ns, motion, tuple(dict.fromkeys(names)), trunk.fit, whole, whole_ns, since_ns, changed, trunk.taught_s,
-            by_shirt=True,
+            by_shirt=True, off_keypoints_m=_newest_off_m(state, lower),
         )  # fmt: skip
         return updated, CueEstimates(trunk, lower)
 
@@ -324,3 +324,12 @@ class BodyTracker:
 def _coast_s(state: TrackState, t_ns: int) -> float:
     """For how long an unobserved body is extrapolated [s]; it then stands still."""
     return min(seconds(t_ns - state.t_ns), 0.1)
+
+
+def _newest_off_m(state: TrackState, found: ClothesEstimate | None) -> Floats | None:
+    """Of this frame set if it has keypoints, otherwise of the last one that had."""
+    return (
+        state.off_keypoints_m
+        if found is None or found.off_keypoints_m is None
+        else found.off_keypoints_m
+    )

@@ -19,6 +19,7 @@ from mocapd.tracking.base import Track
 from mocapd.tracking.cues.clothes.clothes_confidence import (
     joint_confidence as confidence_by_clothes,
 )
+from mocapd.tracking.cues.clothes.clothes_confidence import keypoint_agreement
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_solver import ClothesEstimate
 from mocapd.tracking.cues.shirt.shirt_confidence import joint_confidence as confidence_by_shirt
@@ -55,12 +56,13 @@ def publish_body(
     """The track at t_ns. motion: the body of `state`, extrapolated to t_ns."""
     away_s = seconds(t_ns - state.t_ns)
     confidence, uncertainty_m = np.zeros(N_JOINTS), np.full(N_JOINTS, np.inf)
-    unfiltered = None
+    agreement, unfiltered = np.ones(N_JOINTS), None
     if state.whole is not None and clothes is not None:
         unfiltered, uncertainty_m = _pose_with_uncertainty(clothes.fitter, motion, state.whole)
         away_of_whole_s = seconds(t_ns - state.whole_ns)
         n = len(state.cameras)
         confidence = confidence_by_clothes(state.whole, n, uncertainty_m, away_of_whole_s)
+        agreement = keypoint_agreement(state.off_keypoints_m)
     if state.by_shirt and state.trunk is not None and shirt is not None:
         upper = upper_body_state(motion, shirt.model)
         by_trunk, of_trunk_m = _pose_with_uncertainty(shirt.fitter, upper, state.trunk)
@@ -69,6 +71,7 @@ def publish_body(
         lower = _LOWER_JOINTS if state.whole is not None else np.empty(0, np.int64)
         by_it[lower], of_trunk_m[lower] = confidence[lower], uncertainty_m[lower]
         confidence, uncertainty_m = by_it, of_trunk_m
+        agreement[np.setdiff1d(np.arange(N_JOINTS), lower)] = 1.0
     assert unfiltered is not None
     carrier = _carrier(state)
     jumped = _doubtful_bones(state, motion, estimates, clothes) if away_s == 0.0 else ()
@@ -85,7 +88,7 @@ def publish_body(
         tracker=carrier,
         pose=pose,
         joints_m=joints_m,
-        confidence=confidence,
+        confidence=confidence * agreement,
         cameras=state.cameras if away_s == 0.0 else (),
         smoothing_lag_ns=nanoseconds(pose_filter.lag_s),
         uncertainty_m=np.hypot(grow_uncertainty(uncertainty_m, away_s), behind_m),

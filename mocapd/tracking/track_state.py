@@ -33,7 +33,8 @@ class TrackState:
     trunk: newest shirt fit of trunk and arms, None if the shirt is not visible; by_shirt: True if that fit places trunk
     and arms; whole: newest clothes fit, of the whole body or of legs and head below a trunk from the shirt, at whole_ns;
     legs_since_ns: first fit of legs and head; cameras: those that show the body; changed: parts of the body found away
-    from their prediction; taught_s: see `BodyShapeEstimate`.
+    from their prediction; taught_s: see `BodyShapeEstimate`; off_keypoints_m: see `ClothesEstimate`, when keypoints were
+    last detected.
     """
 
     t_ns: int
@@ -46,6 +47,7 @@ class TrackState:
     changed: tuple[str, ...] = ()
     taught_s: float = 0.0
     by_shirt: bool = False
+    off_keypoints_m: Floats | None = None
 
     def with_shape(self, wearer: BodyShapeEstimate) -> "TrackState":
         """The same state with the caller's body shape."""

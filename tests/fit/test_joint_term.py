@@ -147,3 +147,15 @@ def test_which_way_the_trunk_was_seen_to_face(turn_rad: float) -> None:
     )
     nothing = seen_at(goal, 0.0, np.array([], dtype=int))
     assert JointTerm(BODY, nothing).turn_rad(here_m) == 0.0
+
+
+def test_a_joint_is_as_far_off_its_keypoint_as_it_lies_beside_the_ray() -> None:
+    joints_m = posed(ROOT, relaxed()).joints
+    term = JointTerm(BODY, seen_at(joints_m, cameras=CROSSING))
+    assert np.allclose(term.off_keypoints_m(joints_m), 0.0, atol=1e-9)
+    hand = INDEX["leftHand"]
+    moved_m = joints_m.copy()
+    moved_m[hand] += [0.0, 0.12, 0.0]  # both cameras look on nearly level
+    off_m = term.off_keypoints_m(moved_m)
+    assert 0.1 < off_m[hand] <= 0.12
+    assert not np.delete(off_m, hand).max() > 1e-9

@@ -22,6 +22,7 @@ from mocapd.geometry.camera_model import from_camera, to_camera
 from mocapd.types import Camera, Floats, Ints
 
 _NOWHERE = 1e-6 * np.eye(3)  # information of a joint that no camera saw [1/m^2]
+_DEEPER = 0.5  # share of an error along the ray: keypoints know depths half as well as places
 _ANKLES, _TOES = ([INDEX[side + bone] for side in SIDES] for bone in ("Foot", "Toes"))
 _TRUNK = [(INDEX["left" + j], INDEX["right" + j]) for j in ("UpperArm", "UpperLeg")]
 
@@ -76,6 +77,16 @@ class JointTerm:
             place2, depth2 = _mahalanobis2(rays, joints_m)
             for m2, weight in ((place2, p.weight), (depth2, p.weight * p.depth_weight)):
                 out[rays.joints] += weight * m2 / (1.0 + m2 / p.robust**2)
+        return out
+
+    def off_keypoints_m(self, joints_m: Floats) -> Floats:
+        """How far each joint (J,) of a body at joints_m (J,3) is from its keypoint [m], in the camera where that is largest:
+        beside the ray, and a share of the distance along it; 0 without keypoints."""
+        out = np.zeros(len(joints_m))
+        for rays in self.rays:
+            beside_m, deeper_m = _off_keypoints_m(rays, joints_m)
+            off_m = np.hypot(np.linalg.norm(beside_m, axis=1), _DEEPER * deeper_m)
+            out[rays.joints] = np.maximum(out[rays.joints], off_m)
         return out
 
     def worst_off_sds2(self, joints_m: Floats) -> float:
@@ -177,10 +188,15 @@ def _spreads_m(rays: JointRays) -> Floats:
 
 def _mahalanobis2(rays: JointRays, joints_m: Floats) -> tuple[Floats, Floats]:
     """Of each keypoint (N,), squared: of its place across the ray, and of its depth relative to the hips."""
-    there = to_camera(rays.camera, joints_m)
-    z = there[rays.joints, 2]
-    off = rays.xy * z[:, None] - there[rays.joints, :2]
+    off, deeper_m = _off_keypoints_m(rays, joints_m)
     xx, xy, yy = rays.information.T
     place2 = xx * off[:, 0] ** 2 + 2.0 * xy * off[:, 0] * off[:, 1] + yy * off[:, 1] ** 2
-    depth2 = rays.depth_information * (rays.farther_m - (z - there[0, 2])) ** 2
-    return place2, depth2
+    return place2, rays.depth_information * deeper_m**2
+
+
+def _off_keypoints_m(rays: JointRays, joints_m: Floats) -> tuple[Floats, Floats]:
+    """From the joints to each keypoint: across the ray (N,2), and along the camera's axis (N,) relative to the hips."""
+    there = to_camera(rays.camera, joints_m)
+    z = there[rays.joints, 2]
+    beside_m: Floats = rays.xy * z[:, None] - there[rays.joints, :2]
+    return beside_m, rays.farther_m - (z - there[0, 2])

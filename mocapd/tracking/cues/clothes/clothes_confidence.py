@@ -1,4 +1,5 @@
-"""How far each joint may be believed: how much of the body around it the pictures confirm, and how well they place it."""
+"""How far each joint may be believed: how much of the body around it the pictures confirm, how well they place it, and
+whether its keypoints agree."""
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from mocapd.types import Floats
 
 _ENOUGH_PX = 25.0  # confirmed pixels (of the half that is counted) for full confidence
 _HALF_M = 0.10  # an uncertainty that halves it: this tracker's are twice the shirt's
+_HALF_OFF_M = 0.15  # a distance from its keypoints that does, too
 
 
 def _areas_by_joint() -> dict[str, tuple[int, ...]]:
@@ -58,3 +60,14 @@ def joint_confidence(
     enough = np.minimum(matched / (_ENOUGH_PX * max(n_cameras, 1)), 1.0)
     out = np.minimum(1.25 * share, 1.0) * enough / (1.0 + (uncertainty_m / _HALF_M) ** 2)
     return np.asarray(out * confidence_fade(away_s))
+
+
+def keypoint_agreement(off_keypoints_m: Floats | None) -> Floats:
+    """Factor of each joint's confidence (J,): lower where its keypoints contradict it. With it, confidence is about the share
+    of such joints that are within 5 cm of their true place.
+
+    off_keypoints_m (J,): see `ClothesEstimate`. Not for the pose filter: a joint that is contradicted moves as it is seen.
+    """
+    if off_keypoints_m is None:
+        return np.ones(N_JOINTS)
+    return np.asarray(1.0 / (1.0 + (off_keypoints_m / _HALF_OFF_M) ** 2))

@@ -60,13 +60,15 @@ class ClothesObservation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClothesEstimate:
-    """A whole body fitted to the clothes; cameras: those that show it; changed: parts found away from their prediction."""
+    """A whole body fitted to the clothes; cameras: those that show it; changed: parts found away from their prediction;
+    off_keypoints_m (J,): of the joints from their keypoints [m], None in a frame set without these."""
 
     fit: Fit
     motion: MotionState
     views: tuple[View, ...]
     cameras: tuple[str, ...]
     changed: tuple[str, ...] = ()
+    off_keypoints_m: Floats | None = None
 
 
 class ClothesSolver:
@@ -196,7 +198,7 @@ class ClothesSolver:
         best = self._hypotheses.improve(
             ScoredFit(fit, views, terms), at, self._tests_hypotheses(ticks), probe
         )
-        return self._estimate(best, state.motion, dt_s, frames.t_ns)
+        return self._estimate(best, state.motion, dt_s, frames.t_ns, observed.joints)
 
     def fit_lower_body(
         self,
@@ -252,7 +254,7 @@ class ClothesSolver:
         best = self._hypotheses.improve(
             ScoredFit(fit, observed.views, terms), at, self._tests_hypotheses(ticks), probe
         )
-        return self._estimate(best, last, dt_s, frames.t_ns)
+        return self._estimate(best, last, dt_s, frames.t_ns, observed.joints)
 
     def start_from(
         self, body: MotionState, frames: FrameSet, ticks: Ticks
@@ -282,7 +284,12 @@ class ClothesSolver:
         return (PlantedTerm(self.model, joints, self._feet.places_m, self.params.planted),)
 
     def _estimate(
-        self, scored: ScoredFit, last: MotionState | None, dt_s: float, t_ns: int | None = None
+        self,
+        scored: ScoredFit,
+        last: MotionState | None,
+        dt_s: float,
+        t_ns: int | None = None,
+        keypoints: Sequence[JointTerm] = (),
     ) -> ClothesEstimate | None:
         fit, changed = scored.fit, scored.changed
         if not _is_plausible(fit, self.params):
@@ -290,10 +297,14 @@ class ClothesSolver:
         velocity = np.zeros(self.model.n_pose)
         if last is not None:
             velocity = self._velocity(fit, scored.views, last, dt_s, changed)
+        joints_m, _ = self.fitter.joints(fit.state)
         if t_ns is not None:
-            self._feet.update(self.fitter.joints(fit.state)[0], t_ns)
+            self._feet.update(joints_m, t_ns)
         motion, views = replace(fit.state, velocity=velocity), tuple(scored.views)
-        return ClothesEstimate(fit, motion, views, self.cameras.names(views), changed)
+        off_keypoints_m = keypoints[0].off_keypoints_m(joints_m) if keypoints else None
+        return ClothesEstimate(
+            fit, motion, views, self.cameras.names(views), changed, off_keypoints_m
+        )
 
     def _velocity(
         self,
