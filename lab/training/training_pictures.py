@@ -25,6 +25,7 @@ from lab.training.random_poses import MovingPose, random_pose
 from lab.training.random_scenes import random_body, random_clothes, random_scene
 from mocapd.assets import asset_path
 from mocapd.body.skeleton import INDEX, joint_positions
+from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, to_camera
 from mocapd.sim.person.group import PersonBody
 from mocapd.sim.person_spec import MotionSpec, PoseKeyframe
@@ -38,6 +39,8 @@ from mocapd.vision.heatmaps.person_crop import crop_about, middle_of
 PICTURE_PX, SIDE_M = 128, 3.0  # of somebody 1.75 m tall
 _SCENES_A_FILE, _PEOPLE_A_SCENE, _POSES, _POSES_A_LIGHT = 4, 3, 24, 8
 _BESIDE = 0.2  # share of people behind whom another one stands
+_LAID = 0.05  # share of poses that lean over or lie, by up to so much
+_LAID_RAD, _THICK_M = 1.7, 0.08
 _NEAREST_M = 0.6
 _JOINTS = np.array([INDEX[name] for name in JOINTS])
 _GREY = (128, 128, 128)
@@ -67,7 +70,10 @@ def examples_of(
             levels = _random_levels(rng, scene)
             empty = renderer.picture(None, levels, int(rng.integers(1 << 20)))
         at_m = rng.normal(0.0, [0.35, 0.0, 0.35])
-        pose = _moved(random_pose(rng, world.skeleton, clips, shutter_s), at_m)
+        pose = random_pose(rng, world.skeleton, clips, shutter_s)
+        if rng.uniform() < _LAID:
+            pose = _laid_down(rng, world, pose)
+        pose = _moved(pose, at_m)
         opened, middle, closed = (
             [PersonBody(one)] for one in (pose.opened, pose.middle, pose.closed)
         )
@@ -110,6 +116,19 @@ def _behind(rng: np.random.Generator, camera_m: tuple[float, float, float]) -> F
     aside = np.array([towards[2], 0.0, -towards[0]])
     out: Floats = aside * rng.uniform(-0.9, 0.9) - towards * rng.uniform(0.9, 1.8)
     return out
+
+
+def _laid_down(rng: np.random.Generator, world: World, pose: MovingPose) -> MovingPose:
+    """Leaning over to anywhere, as somebody who sits, crawls or lies on the floor."""
+    way_rad = rng.uniform(-np.pi, np.pi)
+    axis = np.array([np.cos(way_rad), 0.0, np.sin(way_rad)])
+    over = rotations.exp(rng.uniform(0.3, _LAID_RAD) * axis)
+    opened, closed, middle = (
+        Pose(one.root_m, rotations.multiply(over, one.quats_xyzw))
+        for one in (pose.opened, pose.closed, pose.middle)
+    )
+    up_m = _THICK_M - joint_positions(world.skeleton, middle)[:, 1].min()
+    return _moved(MovingPose(opened, closed, middle), np.array([0.0, up_m, 0.0]))
 
 
 def _moved(pose: MovingPose, by_m: Floats) -> MovingPose:
@@ -162,12 +181,16 @@ def main() -> int:
             scene = random_scene(rng, scenes)
             for _ in range(_PEOPLE_A_SCENE):
                 examples += examples_of(rng, scene, clips)
-        np.savez(
-            args.out / f"{args.seed}_{number:04d}.npz",
-            pictures=np.array([one.picture for one in examples]),
-            uv=np.array([one.uv for one in examples], np.float32),
-            farther=np.array([one.farther for one in examples], np.float32),
-        )
+        path = args.out / f"{args.seed}_{number:04d}.npz"
+        partial = path.with_suffix(".partial")
+        with partial.open("wb") as file:  # who trains meanwhile reads whole files alone
+            np.savez(
+                file,
+                pictures=np.array([one.picture for one in examples]),
+                uv=np.array([one.uv for one in examples], np.float32),
+                farther=np.array([one.farther for one in examples], np.float32),
+            )
+        partial.rename(path)
         number += 1
         sys.stdout.write(f"{number} files\r")
     return 0
