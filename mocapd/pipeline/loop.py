@@ -15,7 +15,7 @@ from mocapd.pipeline.metrics import Metrics, MetricsRecorder
 from mocapd.pipeline.other_programs import OtherPrograms
 from mocapd.pipeline.slowness import SlownessWatch
 from mocapd.pipeline.smoothing import Smoother
-from mocapd.tracking.base import EffortTracker, Track, Tracker
+from mocapd.tracking.base import EffortTracker, LearningTracker, Track, Tracker
 from mocapd.tracking.view_disagreement import lower_confidence
 from mocapd.types import FrameSet
 
@@ -122,6 +122,9 @@ class PipelineLoop:
         self._bodies.put(BodySample(replace(track, body=body), self._skeleton, frames))
         now_ns = monotonic_ns()
         self._recorder.record_body(frames, body, step_ns, now_ns, track.lost_reason)
+        if isinstance(self._tracker, LearningTracker):
+            self._tracker.learn()
+            now_ns = monotonic_ns()
         busy_ns = now_ns - start_ns
         others = self._others.share(now_ns)
         self._recorder.set_slowness(self._slowness.update(number, busy_ns, now_ns, others))

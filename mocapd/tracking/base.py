@@ -70,6 +70,15 @@ class RoomLearner(Tracker, Protocol):
 
 
 @runtime_checkable
+class LearningTracker(Tracker, Protocol):
+    """A tracker that learns from a frame set after its body was published, which need not wait for that."""
+
+    def learn(self) -> None:
+        """Learns from the frame set of the last step. Without this call the next step does so first, with the same result."""
+        ...
+
+
+@runtime_checkable
 class EffortTracker(Tracker, Protocol):
     """A tracker that can skip optional work on a slow machine; see `tracking.effort`."""
 

@@ -1,4 +1,4 @@
-"""The per-frame state machine: predict, observe, solve, update cue trust, learn, publish one body."""
+"""The per-frame state machine: predict, observe, solve, update cue trust, publish one body; then learn."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -98,6 +98,7 @@ class BodyTracker:
         body = self._handed_over.body
         self._tracking.reset(None if body is None else body.t_ns)
         self._state: TrackState | None = None
+        self._unlearned: tuple[CueEstimates, dict[int, float]] | None = None
         self._shirt_trust, self._clothes_trust = CueTrust(), CueTrust()
         self._track_start_ns, self._ticks = 0, TickClock()
 
@@ -122,6 +123,7 @@ class BodyTracker:
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
         """See Tracker. Raises ConfigError when a frame's size is not its calibration's."""
         require_stature(shape, self._stature_m)
+        self.learn()
         self._ticks.pass_to(frames.t_ns)
         present = self._load(frames)
         self.probe("picture")
@@ -138,9 +140,7 @@ class BodyTracker:
         )
         if tracking is Tracking.LOST and not is_observed:
             state = None
-        self._state = state
-        self._learn(estimates, present)
-        self.probe("learn")
+        self._state, self._unlearned = state, (estimates, present)
         if state is not None and self._shirt is not None:
             n, motion = self._shirt.model.n_shape, state.motion
             shape = update_shape(
@@ -159,6 +159,18 @@ class BodyTracker:
         )  # fmt: skip
         self.probe("publish")
         return track
+
+    def learn(self) -> None:
+        """See LearningTracker. Updates each cue's background, light and colours from its estimate."""
+        if self._unlearned is None:
+            return
+        (estimates, present), self._unlearned = self._unlearned, None
+        state, clothes = self._state, self._clothes
+        if self._shirt is not None:
+            self._shirt.learn(estimates.shirt, present, state is None)
+        if clothes is not None:
+            clothes.learn(estimates.clothes, state is None, state is not None and state.by_shirt)
+        self.probe("learn")
 
     # --- stages ---
 
@@ -212,6 +224,8 @@ class BodyTracker:
                 return self._solve_by_shirt(state, predicted, trunk, observed, dt_s, frames)
             locator.reset()
             return self._solve_by_shirt(separate, separate.motion, trunk, None, dt_s, frames)
+        if clothes is not None and clothes.legs_rest:
+            observed = clothes.observe(predicted, t_ns, state.legs_since_ns, False)
         if clothes is not None and observed is not None:
             whole = clothes.fit_whole_body(state, observed, dt_s, frames, self.probe)
         self._update_clothes_trust(whole, t_ns, len(present))
@@ -311,14 +325,6 @@ class BodyTracker:
     ) -> None:
         quality = None if estimate is None else estimate.fit.explained
         self._clothes_trust = self._clothes_trust.update(t_ns, quality, cameras, CLOTHES_TRUST)
-
-    def _learn(self, estimates: CueEstimates, present: dict[int, float]) -> None:
-        """Updates each cue's background, light and colours from its estimate."""
-        state, clothes = self._state, self._clothes
-        if self._shirt is not None:
-            self._shirt.learn(estimates.shirt, present, state is None)
-        if clothes is not None:
-            clothes.learn(estimates.clothes, state is None, state is not None and state.by_shirt)
 
 
 def _coast_s(state: TrackState, t_ns: int) -> float:

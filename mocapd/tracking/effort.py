@@ -25,7 +25,8 @@ class OptionalWork:
     hypotheses: ticks (see `ticks.py`) between tests of other arm and leg poses;
     network, depths, learning, ghosts: factors on the usual interval between uses of the keypoint network, stereo depth
     measurements, updates of the clothes' and the shirt's colours, and searches for ghosts in the background; legs: with a
-    trunk from the shirt, legs and head are fitted in one of this many frame sets and predicted in the others;
+    trunk from the shirt, legs and head are fitted in one of this many frame sets, or one more while they hardly move, and
+    predicted in the others;
     fewer_iterations: solver iterations to skip; fine: most iterations at full pixel density.
     """
 

@@ -32,6 +32,7 @@ from mocapd.tracking.trunk_and_legs import LOWER_BONES
 from mocapd.types import BodyState, Floats, Pose, Tracking
 
 _LOWER_JOINTS = np.setdiff1d(LOWER_BONES, [INDEX["neck"]])  # the shirt covers the neck
+_IS_LOWER = np.isin(np.arange(N_JOINTS), _LOWER_JOINTS)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,7 +72,7 @@ def publish_body(
         lower = _LOWER_JOINTS if state.whole is not None else np.empty(0, np.int64)
         by_it[lower], of_trunk_m[lower] = confidence[lower], uncertainty_m[lower]
         confidence, uncertainty_m = by_it, of_trunk_m
-        agreement[np.setdiff1d(np.arange(N_JOINTS), lower)] = 1.0
+        agreement = np.where(_IS_LOWER, agreement, 1.0)
     assert unfiltered is not None
     carrier = _carrier(state)
     jumped = _doubtful_bones(state, motion, estimates, clothes) if away_s == 0.0 else ()

@@ -2,7 +2,7 @@
 
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from mocapd.body.skeleton import joint_positions
 from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.errors import ConfigError
 from mocapd.trackers.registry import TRACKERS, Resources, build
-from mocapd.tracking.base import EffortTracker, Track, no_probe
+from mocapd.tracking.base import EffortTracker, LearningTracker, Track, no_probe
 from mocapd.tracking.effort import Effort
 from mocapd.types import BodyState, FrameSet, Tracking
 from tests.contract.tracker_cases import CASES, TrackerCase
@@ -68,8 +68,14 @@ def case(built: TrackerCase) -> TrackerCase:
     return built
 
 
-def run(tracker: Stepping, sets: Sequence[FrameSet]) -> list[Track]:
-    return [tracker.step(one) for one in sets]
+def run(
+    tracker: Stepping, sets: Sequence[FrameSet], after: Callable[[], None] = lambda: None
+) -> list[Track]:
+    tracks = []
+    for one in sets:
+        tracks.append(tracker.step(one))
+        after()
+    return tracks
 
 
 def copied(body: BodyState) -> BodyState:
@@ -209,6 +215,17 @@ def test_the_same_frames_after_reset_give_the_same_output(
 ) -> None:
     for one, other in zip(tracked.tracks, run(case.tracker, case.person), strict=True):
         assert_same(one.body, other.body)
+
+
+def test_it_makes_no_difference_when_a_tracker_learns(case: TrackerCase, tracked: Tracked) -> None:
+    tracker = case.tracker.tracker
+    if not isinstance(tracker, LearningTracker):
+        pytest.skip("it learns within its steps")
+    case.tracker.reset()
+    for one, before in zip(
+        run(case.tracker, case.person, tracker.learn), tracked.tracks, strict=True
+    ):
+        assert_same(one.body, before.body)
 
 
 def test_with_the_least_effort_a_person_is_tracked_the_same_each_time(

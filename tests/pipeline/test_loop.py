@@ -77,6 +77,17 @@ class SlowTracker(CannedTracker):
         return super().step(frames, shape)
 
 
+class StudiousTracker(CannedTracker):
+    """Learns until it is let go."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.let_go = threading.Event()
+
+    def learn(self) -> None:
+        self.let_go.wait()
+
+
 class UnseeingTracker(CannedTracker):
     """Finds nobody though somebody moves."""
 
@@ -127,6 +138,17 @@ class Run:
         for k in range(n):
             self.feed()
             self.wait_for(lambda k=k: len(self.out) > k)  # type: ignore[misc]
+
+
+def test_a_body_is_published_before_the_tracker_learns_from_it() -> None:
+    tracker = StudiousTracker()
+    run = Run(tracker)
+    run.loop.start()
+    run.feed_until_out(1)
+    run.feed()
+    assert not run.loop.stop(0.05)  # it still learns from the first
+    tracker.let_go.set()
+    assert run.loop.stop(120.0)
 
 
 def test_each_pair_gives_a_body_in_order_and_metrics_tell_of_it() -> None:
