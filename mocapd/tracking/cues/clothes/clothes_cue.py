@@ -2,16 +2,12 @@
 head below a trunk that the shirt carries."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
-from functools import partial
+from dataclasses import replace
 
 import numpy as np
 
-from mocapd.body.pose_space import SIDES
-from mocapd.body.skeleton import INDEX
 from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
-from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays
@@ -23,6 +19,7 @@ from mocapd.tracking.cues.clothes.clothes_solver import (
     ClothesObservation,
     ClothesSolver,
 )
+from mocapd.tracking.cues.clothes.leg_schedule import LegSchedule
 from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
@@ -30,49 +27,16 @@ from mocapd.tracking.lost_reason import LostReason
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import BodyShapeEstimate, TrackState
-from mocapd.types import Bytes, Floats, FrameSet, Rig
+from mocapd.types import Bytes, FrameSet, Rig
 
 _DEPTHS, _JOINTS = 0, 1  # what alternates; also the look is learned in frames that look for joints
-_CALM_M_S = 0.45  # knees, ankles and head that are no faster
-_CALM_JOINTS = [
-    INDEX["head"],
-    *(INDEX[side + bone] for side in SIDES for bone in ("LowerLeg", "Foot")),
-]
-_NEVER = -1000  # a tick long ago
-
-
-@dataclass(slots=True)
-class _LegTimes:
-    """Below a trunk that the shirt carries, in ticks: when legs and head were fitted last, and when keypoints were detected;
-    fits: how often; rest: not in this frame set; looks: when each camera learned their look; places_m (5,3), speed_m_s: of
-    `_CALM_JOINTS` in the last fit."""
-
-    fitted: int = _NEVER
-    seen: int = _NEVER
-    fits: int = 0
-    rest: bool = False
-    looks: dict[int, int] = field(default_factory=dict)
-    places_m: Floats = field(default_factory=partial(np.full, (len(_CALM_JOINTS), 3), np.inf))
-    speed_m_s: float = np.inf
-
-    def look(self, views: Sequence[View], now: int, every_s: float) -> Sequence[View]:
-        """The view that is to teach the look: one in a frame set, each no more often than every_s."""
-        due = [v for v in views if now - self.looks.get(v.index, _NEVER) >= round(every_s / TICK_S)]
-        if not due:
-            return ()
-        view = min(due, key=lambda one: self.looks.get(one.index, _NEVER))
-        self.looks[view.index] = now
-        return (view,)
-
-    def fit(self, joints_m: Floats, now: int) -> None:
-        """Remembers a fit with joints (J,3)."""
-        places_m, took_s = joints_m[_CALM_JOINTS], max(now - self.fitted, 1) * TICK_S
-        self.speed_m_s = float(np.linalg.norm(places_m - self.places_m, axis=1).max()) / took_s
-        self.places_m, self.fitted, self.fits = places_m, now, self.fits + 1
 
 
 class ClothesCue:
-    """Keeps each camera's background, the appearance of each region, and a search in progress."""
+    """Keeps each camera's background, the appearance of each region, and a search in progress.
+
+    legs_rest: legs and head below a trunk that the shirt carries go on as they moved, in this frame set.
+    """
 
     name = "clothes"
 
@@ -112,7 +76,7 @@ class ClothesCue:
         """Forget background and look."""
         self._solver.reset()
         self._search.reset()
-        self._ticks, self._legs = Ticks(1, 1, 1), _LegTimes()
+        self._ticks, self._legs, self.legs_rest = Ticks(1, 1, 1), LegSchedule(), False
 
     def rehearse(self) -> None:
         """See `ClothesSolver`."""
@@ -148,25 +112,22 @@ class ClothesCue:
         shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then detected less often, and not for
         new legs that silhouettes found.
         """
-        p, legs, now = self.params, self._legs, self._ticks.last
-        legs.rest = False
+        p, work, now = self.params, self._solver.work, self._ticks.last
+        self.legs_rest = False
         if self.cameras.are_new or not self.cameras.has_appearance:
             return None
         is_new = legs_since_ns is None or t_ns - legs_since_ns <= nanoseconds(
             p.guided_joint_after_s
         )
-        interval = self._solver.work.legs + (legs.speed_m_s < _CALM_M_S)
-        legs.rest = shirt_carries and not is_new and interval > 1 and now - legs.fitted < interval
-        if legs.rest:
+        if shirt_carries and not is_new and self._legs.rests(now, work.legs):
+            self.legs_rest = True
             return None
-        if shirt_carries:
-            every = round(p.guided_joints_s * self._solver.work.network / TICK_S)
-            detects = now - legs.seen >= every and (
-                not is_new or self._solver.first_legs.by_keypoints
-            )
-            legs.seen = now if detects else legs.seen
+        if not shirt_carries:
+            detects = self._ticks.alternates(2 * work.network, _JOINTS)
+        elif is_new and not self._solver.first_legs.by_keypoints:
+            detects = False
         else:
-            detects = self._ticks.alternates(2 * self._solver.work.network, _JOINTS)
+            detects = self._legs.detects(now, p.guided_joints_s * work.network)
         joints, fitter = self._solver.terms.joints, self.fitter
         detect = joints.detector(fitter, predicted, self.cameras) if detects else no_detection
         rays: list[JointRays | None]
@@ -199,23 +160,18 @@ class ClothesCue:
     ) -> ClothesEstimate | None:
         """Fits legs and head of a body whose trunk and arms, in `start`, come from the shirt; dt_s after `state`."""
         self._search.give_up()
-        if self._legs.rest and state.whole is not None:
+        if self.legs_rest and state.whole is not None:
             return ClothesEstimate(state.whole, start, (), ())
         ticks = replace(self._ticks, frame_index=self._legs.fits)
         found = self._solver.fit_lower_body(state, start, observed, dt_s, frames, ticks, probe)
         if found is not None:
-            self._legs.fit(self.fitter.joints(found.motion)[0], self._ticks.last)
+            self._legs.on_fit(self.fitter.joints(found.motion)[0], self._ticks.last)
         return found
 
     @property
     def _measures_depths(self) -> bool:
         """Whether this frame does, where cameras look from one side; others look for joints, and learn."""
         return self._ticks.alternates(2 * self._solver.work.depths, _DEPTHS)
-
-    @property
-    def legs_rest(self) -> bool:
-        """Whether legs and head below a trunk that the shirt carries go on as they moved, in this frame set."""
-        return self._legs.rest
 
     # --- from nothing ---
 
@@ -245,7 +201,7 @@ class ClothesCue:
         """Updates the appearance from a body that fits well, and the background beside it, or everywhere while the track
         is lost."""
         p, cameras, interval = self.params, self.cameras, self._solver.work.learning
-        if self._ticks.count == 0 or self._legs.rest:
+        if self._ticks.count == 0 or self.legs_rest:
             return  # more frames do not teach faster, and a body that was not drawn anew marks no background
         if is_lost and not self._ticks.due(p.absorb_s):
             cameras.mark_unknown()  # what stays for long is furniture that was moved
@@ -254,7 +210,7 @@ class ClothesCue:
         agrees = found is not None and found.fit.explained >= p.learn_explained
         views: Sequence[View] = ()
         if found is not None and shirt_carries:
-            views = self._legs.look(found.views, self._ticks.last, p.guided_look_s * interval)
+            views = self._legs.teacher(found.views, self._ticks.last, p.guided_look_s * interval)
         elif found is not None and self._ticks.alternates(2 * interval, _JOINTS):
             # depths and arms that are searched for make their frames long enough
             views = found.views

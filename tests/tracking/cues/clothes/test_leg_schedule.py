@@ -1,0 +1,47 @@
+"""Legs below a shirt that carries the trunk: fitted in each frame set while they move, in every second while they stand."""
+
+import numpy as np
+
+from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.fit.fit_params import TICK_S
+from mocapd.fit.view import View
+from mocapd.tracking.cues.clothes.leg_schedule import LegSchedule
+
+STANDING_M = np.tile(np.arange(3.0), (N_JOINTS, 1))
+
+
+def fitted_at(foot_m_s: float, every: int = 1, ticks: int = 12) -> list[int]:
+    """At which ticks legs are fitted of which one foot moves at this speed."""
+    schedule, out = LegSchedule(), []
+    for now in range(ticks):
+        if not schedule.rests(now, every):
+            joints_m = STANDING_M.copy()
+            joints_m[INDEX["leftFoot"], 0] += foot_m_s * now * TICK_S
+            schedule.on_fit(joints_m, now)
+            out.append(now)
+    return out
+
+
+def test_legs_that_stand_rest_in_every_second_frame_set_and_a_kick_is_followed_in_each() -> None:
+    assert fitted_at(2.0) == list(range(12))
+    assert np.diff(fitted_at(0.1)).max() == 2
+    assert np.diff(fitted_at(0.1))[1:].min() == 2
+    assert np.diff(fitted_at(0.1, every=2))[2:].min() == 3
+
+
+def test_each_camera_teaches_in_turn_and_none_is_left_out_by_legs_that_rest() -> None:
+    nothing = np.zeros((1, 1), np.uint8)
+    views = tuple(View(i, (0, 0, 1, 1), nothing, nothing, 0.0) for i in range(2))
+    schedule, seen = LegSchedule(), []
+    for now in range(0, 24, 2):  # legs that stand
+        seen += [view.index for view in schedule.teacher(views, now, 4 * TICK_S)]
+    assert seen == [0, 1] * 6
+    schedule, seen = LegSchedule(), []
+    for now in range(24):
+        seen += [view.index for view in schedule.teacher(views, now, 4 * TICK_S)]
+    assert seen == [0, 1] * 6
+
+
+def test_keypoints_are_detected_no_more_often_than_asked() -> None:
+    schedule = LegSchedule()
+    assert [now for now in range(10) if schedule.detects(now, 3 * TICK_S)] == [0, 3, 6, 9]
