@@ -54,7 +54,7 @@ class PipelineLoop:
         self._on_death = on_death
         self._absence, self._off_m = absence, off_m
         self._stopping = threading.Event()
-        self._began_ns: int | None = None  # start of the current step
+        self._began_ns: int | None = None  # start of the current step, or of learning from it
         self._recorder = MetricsRecorder()
         self._effort = EffortControl()
         self._slowness, self._others = SlownessWatch(), OtherPrograms()
@@ -123,8 +123,9 @@ class PipelineLoop:
         now_ns = monotonic_ns()
         self._recorder.record_body(frames, body, step_ns, now_ns, track.lost_reason)
         if isinstance(self._tracker, LearningTracker):
+            self._began_ns = now_ns
             self._tracker.learn()
-            now_ns = monotonic_ns()
+            now_ns, self._began_ns = monotonic_ns(), None
         busy_ns = now_ns - start_ns
         others = self._others.share(now_ns)
         self._recorder.set_slowness(self._slowness.update(number, busy_ns, now_ns, others))

@@ -334,8 +334,5 @@ def _coast_s(state: TrackState, t_ns: int) -> float:
 
 def _newest_off_m(state: TrackState, found: ClothesEstimate | None) -> Floats | None:
     """Of this frame set if it has keypoints, otherwise of the last one that had."""
-    return (
-        state.off_keypoints_m
-        if found is None or found.off_keypoints_m is None
-        else found.off_keypoints_m
-    )
+    newest = None if found is None else found.off_keypoints_m
+    return state.off_keypoints_m if newest is None else newest

@@ -85,7 +85,7 @@ class ClothesCue:
 
     def take(self, pictures: Pictures, ticks: Ticks, /) -> None:
         """See Cue."""
-        self._ticks = ticks
+        self._ticks, self.legs_rest = ticks, False
         self._search.times.on_frame_set(pictures.t_ns)
         self.cameras.take({i: pictures.each[i].bgr for i in pictures.present}, pictures.present)
 
