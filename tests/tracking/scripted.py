@@ -186,6 +186,7 @@ class ScriptedClothes(_Scripted):
 
     def __init__(self, script: Sequence[Sight], lost_reason: LostReason | None = None) -> None:
         super().__init__(script, WHOLE)
+        self.rests_below_the_shirt = self.legs_rest = False
         self.nobody = SimpleNamespace(body=np.zeros((1, 1), np.uint8))
         self._lost_reason = lost_reason
 
@@ -202,8 +203,11 @@ class ScriptedClothes(_Scripted):
             _fit(WHOLE, motion, self.sight.quality), motion, (), tuple(self.frames.frames)
         )
 
-    def observe(self, predicted: MotionState, *_: object) -> ClothesObservation:
-        return ClothesObservation(predicted, [], ())
+    def observe(
+        self, predicted: MotionState, _t_ns: int, _since_ns: int | None, shirt_carries: bool
+    ) -> ClothesObservation | None:
+        self.legs_rest = self.rests_below_the_shirt and shirt_carries
+        return None if self.legs_rest else ClothesObservation(predicted, [], ())
 
     def fit_whole_body(
         self, known: TrackState, seen: ClothesObservation, *_: object

@@ -139,6 +139,15 @@ def test_under_a_jacket_clothes_carry_until_the_shirt_is_seen_again(
     assert at(bodies, 2.0 + LOOK_S + SHIRT_TRUST.confirm_s + 2.1 / hz).tracker == BOTH
 
 
+def test_a_shirt_that_is_lost_while_legs_rest_costs_no_frame() -> None:
+    one = scene((Sight(0.0), Sight(1.0, None)), ALWAYS)
+    assert one.clothes is not None
+    one.clothes.rests_below_the_shirt = True
+    bodies = one.run(2.0)
+    assert carriers(bodies) == [NOBODY, BOTH, CLOTHES]
+    assert {len(body.cameras) for body in bodies if body.t_ns > nanoseconds(0.2)} == {2}
+
+
 def test_a_flash_of_the_shirt_changes_nothing() -> None:
     flash = scene((Sight(0.0, None), Sight(1.0), Sight(1.2, None)), ALWAYS)
     assert carriers(flash.run(3.0)) == [NOBODY, CLOTHES]
