@@ -165,7 +165,9 @@ class ClothesCue:
         ticks = replace(self._ticks, frame_index=self._legs.fits)
         found = self._solver.fit_lower_body(state, start, observed, dt_s, frames, ticks, probe)
         if found is not None:
-            self._legs.on_fit(self.fitter.joints(found.motion)[0], self._ticks.last)
+            joints_m, _ = self.fitter.joints(found.motion)
+            crossing = not self.fitter.has_small_baseline(found.motion, found.views)
+            self._legs.on_fit(joints_m, self._ticks.last, crossing)
         return found
 
     @property

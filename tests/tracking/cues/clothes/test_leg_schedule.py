@@ -10,14 +10,14 @@ from mocapd.tracking.cues.clothes.leg_schedule import LegSchedule
 STANDING_M = np.tile(np.arange(3.0), (N_JOINTS, 1))
 
 
-def fitted_at(foot_m_s: float, every: int = 1, ticks: int = 12) -> list[int]:
+def fitted_at(foot_m_s: float, every: int = 1, crossing: bool = True, ticks: int = 12) -> list[int]:
     """At which ticks legs are fitted of which one foot moves at this speed."""
     schedule, out = LegSchedule(), []
     for now in range(ticks):
         if not schedule.rests(now, every):
             joints_m = STANDING_M.copy()
             joints_m[INDEX["leftFoot"], 0] += foot_m_s * now * TICK_S
-            schedule.on_fit(joints_m, now)
+            schedule.on_fit(joints_m, now, crossing)
             out.append(now)
     return out
 
@@ -27,6 +27,10 @@ def test_legs_that_stand_rest_in_every_second_frame_set_and_a_kick_is_followed_i
     assert np.diff(fitted_at(0.1)).max() == 2
     assert np.diff(fitted_at(0.1))[1:].min() == 2
     assert np.diff(fitted_at(0.1, every=2))[2:].min() == 3
+
+
+def test_side_by_side_cameras_fit_legs_that_stand_in_each_frame_set() -> None:
+    assert fitted_at(0.1, crossing=False) == list(range(12))
 
 
 def test_each_camera_teaches_in_turn_and_none_is_left_out_by_legs_that_rest() -> None:
