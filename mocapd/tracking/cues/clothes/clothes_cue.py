@@ -162,7 +162,7 @@ class ClothesCue:
         self._search.give_up()
         if self.legs_rest and state.whole is not None:
             return ClothesEstimate(state.whole, start, (), ())
-        ticks = replace(self._ticks, frame_index=self._legs.fits)
+        ticks = replace(self._ticks, frame_index=self._legs.turn(self._ticks.frame_index))
         found = self._solver.fit_lower_body(state, start, observed, dt_s, frames, ticks, probe)
         if found is not None:
             joints_m, _ = self.fitter.joints(found.motion)

@@ -49,3 +49,13 @@ def test_each_camera_teaches_in_turn_and_none_is_left_out_by_legs_that_rest() ->
 def test_keypoints_are_detected_no_more_often_than_asked() -> None:
     schedule = LegSchedule()
     assert [now for now in range(10) if schedule.detects(now, 3 * TICK_S)] == [0, 3, 6, 9]
+
+
+def test_work_that_takes_turns_comes_to_each_turn_while_legs_rest() -> None:
+    schedule, turns = LegSchedule(), []
+    for now in range(12):
+        if not schedule.rests(now, 1):
+            turns.append(schedule.turn(now) % 2)
+            schedule.on_fit(STANDING_M, now, True)
+    assert turns.count(0) >= 2
+    assert turns.count(1) >= 2
