@@ -3,7 +3,7 @@ teaches their look.
 
 Half of what both cues cost together is legs and head, which mostly stand. While they hardly move they go on as predicted in
 every second frame set: in 33 ms, what is slower than 0.45 m/s strays by less than its fit does. Not before cameras side by
-side, where it takes many frame sets to tell depths and toes.
+side, whose toes hang on which points are measured in which frame set (docs/decisions/one-body.md).
 """
 
 import numpy as np
