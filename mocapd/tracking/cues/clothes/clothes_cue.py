@@ -20,7 +20,6 @@ from mocapd.tracking.cues.clothes.clothes_solver import (
     ClothesSolver,
 )
 from mocapd.tracking.cues.clothes.leg_schedule import LegSchedule
-from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.tracking.lost_reason import LostReason
@@ -109,8 +108,8 @@ class ClothesCue:
         """Classifies the pictures about the predicted body; None without a background or an appearance model, and while the
         legs rest, see `legs_rest`.
 
-        shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then detected less often, and not for
-        new legs that silhouettes found.
+        shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then detected less often, by half of the
+        cameras at once, and not for new legs that silhouettes found.
         """
         p, work, now = self.params, self._solver.work, self._ticks.last
         self.legs_rest = False
@@ -122,14 +121,17 @@ class ClothesCue:
         if shirt_carries and not is_new and self._legs.rests(now, work.legs):
             self.legs_rest = True
             return None
+        detecting = list(self.cameras.present)
         if not shirt_carries:
-            detects = self._ticks.alternates(2 * work.network, _JOINTS)
+            detecting = detecting if self._ticks.alternates(2 * work.network, _JOINTS) else []
         elif is_new and not self._solver.first_legs.by_keypoints:
-            detects = False
+            detecting = []
         else:
-            detects = self._legs.detects(now, p.guided_joints_s * work.network)
+            most = len(detecting) if is_new else (len(detecting) + 1) // 2
+            every_s = p.guided_joints_s * work.network
+            detecting = self._legs.keypoints.take(detecting, now, every_s, most)
         joints, fitter = self._solver.terms.joints, self.fitter
-        detect = joints.detector(fitter, predicted, self.cameras) if detects else no_detection
+        detect = joints.detector(fitter, predicted, self.cameras, detecting)
         rays: list[JointRays | None]
         views, rays = self.cameras.prepare(
             predicted, self._solver.searches_everywhere(self._ticks), detect
@@ -212,7 +214,9 @@ class ClothesCue:
         agrees = found is not None and found.fit.explained >= p.learn_explained
         views: Sequence[View] = ()
         if found is not None and shirt_carries:
-            views = self._legs.teacher(found.views, self._ticks.last, p.guided_look_s * interval)
+            shown = {view.index: view for view in found.views}
+            every_s = p.guided_look_s * interval
+            views = [shown[i] for i in self._legs.look.take(shown, self._ticks.last, every_s)]
         elif found is not None and self._ticks.alternates(2 * interval, _JOINTS):
             # depths and arms that are searched for make their frames long enough
             views = found.views

@@ -1,6 +1,6 @@
 """Keypoint detection: runs the heatmap network of each camera on a crop about the predicted body."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 
 import cv2
 import numpy as np
@@ -47,14 +47,21 @@ class KeypointDetectors:
         self._relative_size, self._params = stature_m / STATURE_M, params
 
     def detector(
-        self, fitter: Fitter, predicted: MotionState, cameras: CameraViews
+        self,
+        fitter: Fitter,
+        predicted: MotionState,
+        cameras: CameraViews,
+        detecting: Collection[int] | None = None,
     ) -> Callable[[int], JointRays | None]:
-        """Returns a function that detects the keypoints of the predicted body in the camera of an index."""
-        if not self._networks:
+        """Returns a function that detects the keypoints of the predicted body in the camera of an index, if that is among
+        `detecting` (None: all are)."""
+        if not self._networks or (detecting is not None and not detecting):
             return no_detection
         here_m, _ = fitter.joints(predicted)
 
         def detect(i: int) -> JointRays | None:
+            if detecting is not None and i not in detecting:
+                return None
             late_s, there_m = cameras.present[i], here_m
             if late_s:
                 there_m, _ = fitter.joints(predict_state(fitter.model, predicted, late_s))

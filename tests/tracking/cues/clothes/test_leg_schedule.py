@@ -4,8 +4,7 @@ import numpy as np
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import TICK_S
-from mocapd.fit.view import View
-from mocapd.tracking.cues.clothes.leg_schedule import LegSchedule
+from mocapd.tracking.cues.clothes.leg_schedule import CameraTurns, LegSchedule
 
 STANDING_M = np.tile(np.arange(3.0), (N_JOINTS, 1))
 
@@ -33,22 +32,21 @@ def test_side_by_side_cameras_fit_legs_that_stand_in_each_frame_set() -> None:
     assert fitted_at(0.1, crossing=False) == list(range(12))
 
 
-def test_each_camera_teaches_in_turn_and_none_is_left_out_by_legs_that_rest() -> None:
-    nothing = np.zeros((1, 1), np.uint8)
-    views = tuple(View(i, (0, 0, 1, 1), nothing, nothing, 0.0) for i in range(2))
-    schedule, seen = LegSchedule(), []
-    for now in range(0, 24, 2):  # legs that stand
-        seen += [view.index for view in schedule.teacher(views, now, 4 * TICK_S)]
-    assert seen == [0, 1] * 6
-    schedule, seen = LegSchedule(), []
-    for now in range(24):
-        seen += [view.index for view in schedule.teacher(views, now, 4 * TICK_S)]
-    assert seen == [0, 1] * 6
+def taken(cameras: int, every: int, most: int, at: range) -> list[list[int]]:
+    """The cameras whose turn it is at each of these ticks."""
+    turns = CameraTurns()
+    return [turns.take(range(cameras), now, every * TICK_S, most) for now in at]
 
 
-def test_keypoints_are_detected_no_more_often_than_asked() -> None:
-    schedule = LegSchedule()
-    assert [now for now in range(10) if schedule.detects(now, 3 * TICK_S)] == [0, 3, 6, 9]
+def test_cameras_take_turns_no_more_often_than_asked_and_no_frame_set_has_all_of_the_work() -> None:
+    assert taken(2, 3, 1, range(7)) == [[0], [1], [], [0], [1], [], [0]]
+    assert taken(4, 3, 2, range(4)) == [[0, 1], [2, 3], [], [0, 1]]
+    assert taken(2, 3, 2, range(4)) == [[0, 1], [], [], [0, 1]]
+
+
+def test_legs_that_rest_leave_no_camera_out() -> None:
+    assert taken(2, 4, 1, range(0, 12, 2)) == [[0], [1]] * 3
+    assert taken(2, 3, 1, range(0, 12, 2)) == [[0], [1]] * 3
 
 
 def test_work_that_takes_turns_comes_to_each_turn_while_legs_rest() -> None:
