@@ -11,6 +11,7 @@ from mocapd.pipeline.body_hub import BodySample, TakesBodies
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.effort_control import EffortControl
 from mocapd.pipeline.idle_collection import IdleCollection
+from mocapd.pipeline.idle_moments import IdleMoments
 from mocapd.pipeline.metrics import Metrics, MetricsRecorder
 from mocapd.pipeline.other_programs import OtherPrograms
 from mocapd.pipeline.slowness import SlownessWatch
@@ -30,7 +31,8 @@ class PipelineLoop:
 
     `bodies` gets each body in the pipeline's thread, also while `lost`, and must not block; without frames it gets the
     bodies of `absence`, if given, with an empty frame set. `off_m`: the persistent disagreement of the cameras' views,
-    called at each frame set. `on_death` is called in that thread with an unexpected exception, which is then raised
+    called at each frame set. `idle`
+    is told when no frame set waits. `on_death` is called in that thread with an unexpected exception, which is then raised
     again; not at `stop`.
     """
 
@@ -44,6 +46,7 @@ class PipelineLoop:
         on_death: OnDeath,
         absence: Absence | None = None,
         off_m: Callable[[], float] = lambda: 0.0,
+        idle: IdleMoments | None = None,
     ) -> None:
         self._collector = collector
         self._tracker = tracker
@@ -52,7 +55,7 @@ class PipelineLoop:
         self._smoother = smoother
         self._bodies = bodies
         self._on_death = on_death
-        self._absence, self._off_m = absence, off_m
+        self._absence, self._off_m, self._idle = absence, off_m, idle
         self._stopping = threading.Event()
         self._began_ns: int | None = None  # start of the current step, or of learning from it
         self._recorder = MetricsRecorder()
@@ -106,6 +109,8 @@ class PipelineLoop:
                 self._none(self._absence)
             if self._collector.idle:
                 garbage.idle(monotonic_ns())
+                if self._idle is not None:
+                    self._idle.begin()
             self._recorder.count_turn()
 
     def _one(self, frames: FrameSet) -> None:

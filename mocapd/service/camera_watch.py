@@ -17,6 +17,7 @@ from mocapd.calibrate.consistency.findings import CaptureFinding, Mistake
 from mocapd.capture.base import Source
 from mocapd.clock import NS_PER_S
 from mocapd.pipeline.frame_hub import TakesFrames
+from mocapd.pipeline.idle_moments import IdleMoments
 from mocapd.service.identical_cameras import IdenticalCameras, Trust, identical_groups
 from mocapd.service.room_memory import RoomMemory
 from mocapd.service.view_watch import ViewWatch
@@ -38,8 +39,10 @@ class CameraWatch:
         onwards: TakesFrames,
         rooms: RoomMemory | None = None,
         stature_m: float | None = None,
+        idle: IdleMoments | None = None,
     ) -> None:
-        """rig: None disables all checks; onwards: receives the admitted frames; rooms: memory of earlier runs."""
+        """rig: None disables all checks; onwards: receives the admitted frames; rooms: memory of earlier runs;
+        idle: of the pipeline."""
         sources = list(sources)
         calibrated = {camera.name: camera for camera in rig.cameras} if rig else {}
         self._cameras = {
@@ -61,7 +64,7 @@ class CameraWatch:
         }
         self._bumps = {name: BumpWatch(memory) for name, memory in self._memories.items()}
         self._swapped = SwappedCameras(list(self._cameras.values()))
-        self._views = ViewWatch(rig, self._newest_of, stature_m)
+        self._views = ViewWatch(rig, self._newest_of, stature_m, idle=idle)
         self._compared = CheckResult()
         self._looked_at: dict[str, Frame] = {}
         self._misplaced: set[str] = set()

@@ -15,6 +15,7 @@ from mocapd.pipeline.absence import Absence
 from mocapd.pipeline.body_hub import BodyHub
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.pipeline.idle_moments import IdleMoments
 from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.size_guard import SizeGuard
@@ -50,7 +51,8 @@ class RunningSession:
         sources = [camera.source for camera in session.cameras]
         rooms = RoomMemory(config.state_dir)
         stature_m = session.calibration.wearer.stature_m
-        self._cameras = CameraWatch(sources, session.rig, guard, rooms, stature_m)
+        idle = IdleMoments()
+        self._cameras = CameraWatch(sources, session.rig, guard, rooms, stature_m, idle)
         # consumers of pictures join it
         self.hub = FrameHub(self.inputs, self._cameras, bundler=bundler)
         self._captures = [
@@ -77,6 +79,7 @@ class RunningSession:
             died,
             _absence(config, session),
             lambda: self._cameras.off_m,
+            idle,
         )
 
     def start(self) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from mocapd.calibrate.consistency.capture_check import CaptureCheck, CheckResult
 from mocapd.calibrate.consistency.person_views import WORK_PX
 from mocapd.clock import seconds
+from mocapd.pipeline.idle_moments import IdleMoments
 from mocapd.types import Bytes, Frame, Rig
 
 _LONGEST_S = 120.0  # of collecting, when little moves
@@ -22,7 +23,7 @@ _REST_S, _REST_WARNED_S = 900.0, 120.0  # from one comparison to the next
 _MOST_WAITING = 400  # small pictures: the thread is behind
 _PAUSE_S = 0.25
 _NICE = 15
-_BREATH_S = 0.02  # between two looks of the network: it takes a quarter of a processor
+_BREATH_S = 0.04  # between two looks of the network, while the pipeline has no idle moment
 _SPEED_M_S = 0.5  # of joints, as people move
 
 
@@ -35,11 +36,12 @@ class ViewWatch:
         newest: Callable[[str], Frame | None],
         stature_m: float | None = None,
         longest_s: float = _LONGEST_S,
+        idle: IdleMoments | None = None,
     ) -> None:
         """rig: None disables it. newest: thread-safe, the newest frame of a camera; longest_s: limit of collecting when
-        little moves."""
+        little moves; idle: of the pipeline, which looks of the network wait for."""
         self._rig, self._stature_m, self._longest_s = rig, stature_m, longest_s
-        self._newest = newest
+        self._newest, self._idle = newest, idle
         self._sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
         self._waiting: deque[tuple[str, int, Bytes, float]] = deque(maxlen=_MOST_WAITING)
         self._is_collecting = bool(self._sizes)
@@ -89,12 +91,14 @@ class ViewWatch:
             self._waiting.clear()
             self._is_collecting = not self._stopping.is_set()
 
+    def _breathe(self) -> None:
+        if self._idle is not None and not self._stopping.is_set():
+            self._idle.wait(_BREATH_S)
+
     def _compare(self) -> CheckResult | None:
         """Collects for half a minute and compares; None after `stop`."""
         assert self._rig is not None
-        check = CaptureCheck(
-            self._rig, self._stature_m, breathe=lambda: self._stopping.wait(_BREATH_S)
-        )
+        check = CaptureCheck(self._rig, self._stature_m, breathe=self._breathe)
         first_s: float | None = None
         while not self._stopping.wait(_PAUSE_S):
             t_s = 0.0

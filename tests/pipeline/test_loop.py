@@ -13,6 +13,7 @@ from mocapd.clock import monotonic_ns
 from mocapd.pipeline.body_hub import BodyHub, BodySample
 from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.idle_collection import ALL_EVERY_NS, YOUNG_EVERY_NS, IdleCollection
+from mocapd.pipeline.idle_moments import IdleMoments
 from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.trackers.canned.tracker import CannedTracker
@@ -96,10 +97,19 @@ class UnseeingTracker(CannedTracker):
         return Track(lost_body(frames.t_ns, self.name), shape, lost_reason=reason)
 
 
+class CountedMoments(IdleMoments):
+    """Counts them."""
+
+    begun = 0
+
+    def begin(self) -> None:
+        self.begun += 1
+
+
 class Run:
     """A loop on two cameras, fed by hand, with what came out of it."""
 
-    def __init__(self, tracker: Tracker) -> None:
+    def __init__(self, tracker: Tracker, idle: IdleMoments | None = None) -> None:
         self.collector = FrameCollector(("a", "b"))
         self.out: list[BodySample] = []
         self.deaths: list[BaseException] = []
@@ -111,6 +121,7 @@ class Run:
             Smoother("balanced", skeleton_of(SHAPE)),
             BodyHub(self),
             self._die,
+            idle=idle,
         )
         self._seq = 0
 
@@ -172,6 +183,15 @@ def test_each_pair_gives_a_body_in_order_and_metrics_tell_of_it() -> None:
     assert metrics.cameras["a"].counts.received == 12
     assert metrics.cameras["b"].delay_ms >= 5.0
     assert not run.deaths
+
+
+def test_a_moment_without_a_waiting_frame_set_is_told_to_other_work() -> None:
+    idle = CountedMoments()
+    run = Run(CannedTracker(), idle)
+    run.loop.start()
+    run.feed_until_out(3)
+    assert run.loop.stop(20.0)
+    assert idle.begun
 
 
 def test_metrics_tell_why_nobody_is_tracked() -> None:
