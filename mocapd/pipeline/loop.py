@@ -31,9 +31,8 @@ class PipelineLoop:
 
     `bodies` gets each body in the pipeline's thread, also while `lost`, and must not block; without frames it gets the
     bodies of `absence`, if given, with an empty frame set. `off_m`: the persistent disagreement of the cameras' views,
-    called at each frame set. `idle`
-    is told when no frame set waits. `on_death` is called in that thread with an unexpected exception, which is then raised
-    again; not at `stop`.
+    called at each frame set. `idle` is told when no frame set waits. `on_death` is called in that thread with an unexpected
+    exception, which is then raised again; not at `stop`.
     """
 
     def __init__(

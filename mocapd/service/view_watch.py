@@ -1,7 +1,7 @@
 """Periodically checks live views against calibration and clock offsets, by the checks of recordings.
 
 While it collects, for about half a minute, each frame costs its capture thread the copy of a small picture. A thread of
-low priority computes the rest. Then it pauses for minutes.
+low priority computes the rest, in idle moments of the pipeline. Then it pauses for minutes.
 """
 
 import os
@@ -39,7 +39,7 @@ class ViewWatch:
         idle: IdleMoments | None = None,
     ) -> None:
         """rig: None disables it. newest: thread-safe, the newest frame of a camera; longest_s: limit of collecting when
-        little moves; idle: of the pipeline, which looks of the network wait for."""
+        little moves; idle: of the pipeline, which looks of the network wait for (None: for nothing)."""
         self._rig, self._stature_m, self._longest_s = rig, stature_m, longest_s
         self._newest, self._idle = newest, idle
         self._sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}

@@ -1,7 +1,7 @@
 """Any clothes as a cue: the learned colours of body regions before a learned background place the whole body, or legs and
 head below a trunk that the shirt carries."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -111,32 +111,37 @@ class ClothesCue:
         shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then detected less often, by half of the
         cameras at once, and not for new legs that silhouettes found.
         """
-        p, work, now = self.params, self._solver.work, self._ticks.last
         self.legs_rest = False
         if self.cameras.are_new or not self.cameras.has_appearance:
             return None
         is_new = legs_since_ns is None or t_ns - legs_since_ns <= nanoseconds(
-            p.guided_joint_after_s
+            self.params.guided_joint_after_s
         )
-        if shirt_carries and not is_new and self._legs.rests(now, work.legs):
+        if (
+            shirt_carries
+            and not is_new
+            and self._legs.rests(self._ticks.last, self._solver.work.legs)
+        ):
             self.legs_rest = True
             return None
-        detecting = list(self.cameras.present)
-        if not shirt_carries:
-            detecting = detecting if self._ticks.alternates(2 * work.network, _JOINTS) else []
-        elif is_new and not self._solver.first_legs.by_keypoints:
-            detecting = []
-        else:
-            most = len(detecting) if is_new else (len(detecting) + 1) // 2
-            every_s = p.guided_joints_s * work.network
-            detecting = self._legs.keypoints.take(detecting, now, every_s, most)
-        joints, fitter = self._solver.terms.joints, self.fitter
-        detect = joints.detector(fitter, predicted, self.cameras, detecting)
+        joints, detecting = self._solver.terms.joints, self._detecting(shirt_carries, is_new)
+        detect = joints.detector(self.fitter, predicted, self.cameras, detecting)
         rays: list[JointRays | None]
         views, rays = self.cameras.prepare(
             predicted, self._solver.searches_everywhere(self._ticks), detect
         )
         return ClothesObservation(predicted, views, joints.term(self.model, rays))
+
+    def _detecting(self, shirt_carries: bool, is_new: bool) -> Collection[int]:
+        """The cameras whose keypoints are detected in this frame set; is_new: the legs were found a moment ago."""
+        present, every = self.cameras.present, self._solver.work.network
+        if not shirt_carries:
+            return present if self._ticks.alternates(2 * every, _JOINTS) else ()
+        if is_new and not self._solver.first_legs.by_keypoints:
+            return ()
+        most = len(present) if is_new else (len(present) + 1) // 2
+        every_s = self.params.guided_joints_s * every
+        return self._legs.keypoints.take(present, self._ticks.last, every_s, most)
 
     def fit_whole_body(
         self,

@@ -55,12 +55,13 @@ class KeypointDetectors:
     ) -> Callable[[int], JointRays | None]:
         """Returns a function that detects the keypoints of the predicted body in the camera of an index, if that is among
         `detecting` (None: all are)."""
-        if not self._networks or (detecting is not None and not detecting):
+        detecting = cameras.present if detecting is None else detecting
+        if not self._networks or not detecting:
             return no_detection
         here_m, _ = fitter.joints(predicted)
 
         def detect(i: int) -> JointRays | None:
-            if detecting is not None and i not in detecting:
+            if i not in detecting:
                 return None
             late_s, there_m = cameras.present[i], here_m
             if late_s:

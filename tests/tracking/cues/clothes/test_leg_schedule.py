@@ -41,11 +41,17 @@ def taken(cameras: int, every: int, most: int, at: range) -> list[list[int]]:
 def test_cameras_take_turns_no_more_often_than_asked_and_no_frame_set_has_all_of_the_work() -> None:
     assert taken(2, 3, 1, range(7)) == [[0], [1], [], [0], [1], [], [0]]
     assert taken(4, 3, 2, range(4)) == [[0, 1], [2, 3], [], [0, 1]]
-    assert taken(2, 3, 2, range(4)) == [[0, 1], [], [], [0, 1]]
+    assert taken(2, 4, 1, range(24)) == [[0], [1], [], []] * 6
+    assert [now for now, turn in enumerate(taken(2, 3, 2, range(10))) if turn == [0, 1]] == [
+        0,
+        3,
+        6,
+        9,
+    ]
 
 
 def test_legs_that_rest_leave_no_camera_out() -> None:
-    assert taken(2, 4, 1, range(0, 12, 2)) == [[0], [1]] * 3
+    assert taken(2, 4, 1, range(0, 24, 2)) == [[0], [1]] * 6
     assert taken(2, 3, 1, range(0, 12, 2)) == [[0], [1]] * 3
 
 
