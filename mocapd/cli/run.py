@@ -1,6 +1,5 @@
 """`mocapd run`"""
 
-import faulthandler
 import logging
 import os
 from contextlib import ExitStack, closing
@@ -74,6 +73,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
     for line in unsafe_settings(effective):
         _log.warning("unsafe: %s", line)
 
+    from mocapd.app.daemon.abort_traces import AbortTraces
     from mocapd.app.daemon.daemon_page import DaemonPage
     from mocapd.app.daemon.early_start import EarlyStart
     from mocapd.app.daemon.initial_session import first_session
@@ -89,7 +89,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
     from mocapd.service.open_outputs import OpenOutputs
     from mocapd.service.service import Service
 
-    faulthandler.enable()  # the service manager's watchdog sends SIGABRT
+    traces = AbortTraces()
     signals = Signals(reloads=True, within_s=END_S)
     notifier = Notifier.of_environment()
     outputs = OpenOutputs(config)
@@ -108,7 +108,8 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
             page = DaemonPage(service) if config.web.enabled else None
             change = SessionChange(service, read, signals, page, notifier)
             control.attach(service, change.reloads)
-            with DecoderWarnings():  # starts a thread, so not before the forks of the first start
+            traces.start()  # a thread, so not before the forks of the first start
+            with DecoderWarnings():  # one, too
 
                 def tell(text: str) -> None:
                     control.preparing(text)
