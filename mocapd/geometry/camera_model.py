@@ -1,5 +1,6 @@
 """The pinhole camera with Brown-Conrady distortion: forwards, backwards, and its derivatives."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -123,3 +124,13 @@ def rays(camera: Camera, pixels: Floats) -> tuple[Floats, Floats]:
 def centre(camera: Camera) -> Floats:
     """The optical centre (3,) in the world [m]."""
     return -camera.R.T @ camera.t_m
+
+
+def common_place(cameras: Sequence[Camera]) -> Floats:
+    """The point (3,) that is nearest to the optical axes of all cameras [m]."""
+    total, right = 1e-6 * np.eye(3), np.zeros(3)
+    for camera in cameras:
+        across = np.eye(3) - np.outer(camera.R[2], camera.R[2])
+        total += across
+        right += across @ centre(camera)
+    return np.asarray(np.linalg.solve(total, right), np.float64)

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.types import Bytes
+from mocapd.types import Bytes, Singles
 
 _LEAST_AGE = 6  # updates after which a background pixel is valid
 _AGE_BEHIND = 8  # inferred pixels are valid, and adapt quickly once they are visible
@@ -12,6 +12,9 @@ _STEP = 4  # the gain is smooth: sampled at every fourth pixel each way
 _SPREAD = 10.0  # standard deviation of the gain's smoothing window [steps]
 _FAR_SHARE = 0.02  # weight of the whole picture against the neighbourhood
 _GAIN = (0.1, 10.0)
+_PASSES = 2
+_EXPLAINED = 16.0  # from the relit background, 0..255: as far as it may be from a picture of it
+_LEAST_ROOM = 0.5  # of what was known
 
 
 def relight_background(
@@ -20,23 +23,33 @@ def relight_background(
     """Take the picture (h,w,3) for the background where `body` (h,w) is 0, and scale the model
     behind the body by the gain around it.
 
-    mean (h,w,3) 0..255 and age (h,w) are changed in place. With a mask that covers the
-    picture the whole model becomes invalid: a person may be anywhere.
+    mean (h,w,3) 0..255 and age (h,w) are changed in place. With nobody known a person may be anywhere: the room is then
+    what another light explains. Where that is too little, for instance after the camera was moved, the whole model
+    becomes invalid.
     """
-    is_room = body == 0
+    is_room, is_known = body == 0, age >= _LEAST_AGE
+    gain = _gain(picture, mean, is_room & is_known)
     if is_room.all():
-        age[:] = 0
-        return
-    weight = (is_room & (age >= _LEAST_AGE))[::_STEP, ::_STEP, None].astype(np.float32)
-    before = _local_sums(mean[::_STEP, ::_STEP] * weight)
-    now = _local_sums(picture[::_STEP, ::_STEP] * weight)
-    gain = np.clip((now + 1e-3) / (before + 1e-3), *_GAIN)
-    h, w = body.shape
+        for _ in range(_PASSES):  # a person counts as light in the first one
+            is_room = is_known & (np.abs(picture - gain * mean) <= _EXPLAINED).all(axis=2)
+            gain = _gain(picture, mean, is_room)
+        if np.count_nonzero(is_room) < _LEAST_ROOM * np.count_nonzero(is_known):
+            age[:] = 0
+            return
     behind = ~is_room
-    full = cv2.resize(gain.astype(np.float32), (w, h), interpolation=cv2.INTER_LINEAR)
-    mean[behind] = np.minimum(mean[behind] * full[behind], 255.0)
+    mean[behind] = np.minimum(mean[behind] * gain[behind], 255.0)
     age[behind] = np.minimum(age[behind], _AGE_BEHIND)
     mean[is_room] = picture[is_room]
+
+
+def _gain(picture: Bytes, mean: NDArray[np.float32], known: NDArray[np.bool_]) -> Singles:
+    """Of the light (h,w,3), from the surroundings where it is `known` (h,w)."""
+    weight = known[::_STEP, ::_STEP, None].astype(np.float32)
+    before = _local_sums(mean[::_STEP, ::_STEP] * weight)
+    now = _local_sums(picture[::_STEP, ::_STEP] * weight)
+    gain = np.clip((now + 1e-3) / (before + 1e-3), *_GAIN).astype(np.float32)
+    h, w = known.shape
+    return np.asarray(cv2.resize(gain, (w, h), interpolation=cv2.INTER_LINEAR), np.float32)
 
 
 def _local_sums(values: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -133,6 +133,18 @@ def test_a_lamp_that_goes_out_is_followed_also_behind_somebody() -> None:
     assert background.follow_light(dark, NOBODY) is None
 
 
+def test_somebody_whom_nobody_tracks_does_not_become_the_room_when_a_lamp_goes_out() -> None:
+    """And the rest of the room stays known."""
+    background = learned()
+    seen = (0.45 * wall(50)).astype(np.uint8)
+    seen[15:50, 30:50] = (20, 90, 140)
+    assert background.follow_light(seen, NOBODY) is not None
+    before = background.foreground(seen)
+    assert (before[17:48, 32:48] == BEFORE).all()
+    assert np.mean(before[:, :28] == BACKGROUND) > 0.98
+    assert background.follow_light(seen, NOBODY) is None
+
+
 def test_what_somebody_uncovers_is_background_and_somebody_who_comes_is_not() -> None:
     """A person who stood there while the background was learned, and goes."""
     background = RoomBackground(H, W, BackgroundParams())

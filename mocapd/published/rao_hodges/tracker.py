@@ -13,7 +13,7 @@ import numpy as np
 from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
 from mocapd.body.skeleton import joint_positions
 from mocapd.clock import nanoseconds, seconds
-from mocapd.geometry.camera_model import centre
+from mocapd.geometry.camera_model import common_place
 from mocapd.published.rao_hodges.body_chains import (
     BodyChains,
     BodyPlace,
@@ -39,7 +39,7 @@ from mocapd.tracking.tracking_state import (
     confidence_fade,
     grow_uncertainty,
 )
-from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Rig, Tracking
+from mocapd.types import BodyState, Bytes, Floats, FrameSet, Rig, Tracking
 from mocapd.vision.hull.ray_hull import HullPoints, RayHullParams, hull_points, views_of
 
 _TICK_S = 1.0 / 30.0
@@ -77,7 +77,7 @@ class RaoHodgesTracker:
         self._stature_m = stature_m
         self._body: BodyChains = body_chains(mean_shape(stature_m))
         self._silhouettes = RigSilhouettes(rig, p)
-        self._room_m = _box(_common_place(rig.cameras), p.room_m, p.height_m)
+        self._room_m = _box(common_place(rig.cameras), p.room_m, p.height_m)
         self._tracking = TrackingState(tracking)
         self.probe: Probe = no_probe
         self.reset()
@@ -224,13 +224,3 @@ def _box(middle_m: Floats, half_width_m: float, height_m: float) -> Floats:
     low, high = middle_m - half, middle_m + half
     low[1], high[1] = -0.05, height_m
     return np.array([low, high])
-
-
-def _common_place(cameras: Sequence[Camera]) -> Floats:
-    """The point (3,) that is nearest to the optical axes of all cameras [m]."""
-    total, right = 1e-6 * np.eye(3), np.zeros(3)
-    for camera in cameras:
-        across = np.eye(3) - np.outer(camera.R[2], camera.R[2])
-        total += across
-        right += across @ centre(camera)
-    return np.asarray(np.linalg.solve(total, right), np.float64)

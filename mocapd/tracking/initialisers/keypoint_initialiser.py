@@ -1,9 +1,9 @@
-"""The first pose of a person person does not stand facing the cameras, from detected keypoints.
+"""The first pose of a person who does not stand facing the cameras, from detected keypoints.
 
-The network runs on each foreground blob that all cameras show in one place. A pose from its triangulated keypoints is
-fitted to keypoints and silhouettes. It counts as a person only if the silhouette agrees, most keypoints agree in every
-camera and the body touches the floor, in two successive searches at one place: furniture, shadows and screens fail these
-checks.
+The network runs on each foreground blob that all cameras show in one place, or on each part of the visual hull. A pose from
+its triangulated keypoints is fitted to keypoints and silhouettes. It counts as a person only if the silhouette agrees, most
+keypoints agree in every camera and the body touches the floor, in two successive searches at one place: furniture, shadows
+and screens fail these checks.
 """
 
 from collections.abc import Generator, Mapping, Sequence
@@ -21,6 +21,7 @@ from mocapd.geometry.camera_model import project, rays
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import KeypointStartParams, StartParams
 from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
+from mocapd.tracking.initialisers.hull_candidates import HullCandidate
 from mocapd.tracking.initialisers.keypoint_pose import pose_through, triangulated_joints
 from mocapd.tracking.initialisers.standing_initialiser import (
     Blob,
@@ -79,12 +80,13 @@ class KeypointInitialiser:
         self._last_m: list[Floats] = []
 
     def look(
-        self, factors: Floats, information: Floats
+        self, factors: Floats, information: Floats, hull: Sequence[HullCandidate] | None
     ) -> Generator[None, None, KeypointCandidate | None]:
-        """A person of this shape found in two successive searches; yields after each attempt."""
+        """A person of this shape found in two successive searches; yields after each attempt. hull: see `hull_candidates`;
+        None: the blobs of all cameras are matched."""
         found: list[KeypointCandidate] = []
         for shadows in (False, True):
-            for middle_m, person in self._candidates(shadows):
+            for middle_m, person in self._candidates(shadows, hull):
                 one = self.attempt(middle_m, person, shadows, factors, information)
                 if one is not None and self.is_person(one):
                     found.append(one)
@@ -100,11 +102,13 @@ class KeypointInitialiser:
         ]
         return max(again, key=self._worth, default=None)
 
-    def now(self, then: KeypointCandidate, walked_m: float) -> KeypointCandidate | None:
-        """A person of older pictures refitted to the newest ones; None if none is within walked_m [m]."""
+    def now(
+        self, then: KeypointCandidate, walked_m: float, hull: Sequence[HullCandidate] | None
+    ) -> KeypointCandidate | None:
+        """A person of older pictures refitted to the newest ones; None if none is within walked_m [m]. hull: as for look."""
         near = [
             (away_m, middle_m, person)
-            for middle_m, person in self._candidates(then.shadows)
+            for middle_m, person in self._candidates(then.shadows, hull)
             if (away_m := float(np.linalg.norm(person.place_m - then.person.place_m))) <= walked_m
         ]
         if not near:
@@ -173,8 +177,12 @@ class KeypointInitialiser:
             and low_m <= one.lowest_m <= high_m
         )
 
-    def _candidates(self, shadows: bool) -> list[tuple[Floats, PersonCandidate]]:
+    def _candidates(
+        self, shadows: bool, hull: Sequence[HullCandidate] | None
+    ) -> list[tuple[Floats, PersonCandidate]]:
         """Candidate body centres (3,) with their blobs."""
+        if hull is not None:
+            return [] if shadows else [(one.middle_m, one.person) for one in hull]
         views = self._views
         blobs = {i: blobs_of(views.each[i].foreground, shadows, self._start) for i in views.present}
         if not blobs or any(not one for one in blobs.values()):

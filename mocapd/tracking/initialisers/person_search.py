@@ -12,12 +12,9 @@ from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
-from mocapd.tracking.cues.clothes.clothes_params import (
-    KeypointStartParams,
-    MotionMonitorParams,
-    StartParams,
-)
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams, StartParams
 from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
+from mocapd.tracking.initialisers.hull_candidates import HullCandidate, hull_candidates
 from mocapd.tracking.initialisers.keypoint_initialiser import KeypointCandidate, KeypointInitialiser
 from mocapd.tracking.initialisers.motion_monitor import MotionMonitor
 from mocapd.tracking.initialisers.standing_initialiser import (
@@ -89,18 +86,17 @@ class PersonSearch:
         joints: KeypointDetectors,
         views: CameraViews,
         cameras: Sequence[Camera],
-        params: StartParams,
-        keypoint_params: KeypointStartParams,
-        motion: MotionMonitorParams,
+        params: ClothesParams,
         now_ns: Callable[[], int],
     ) -> None:
         """silhouettes: a fitter whose body has one region; cameras: those of the views; now_ns: see `Resources`."""
         self._silhouettes, self._floor, self._views = silhouettes, floor, views
-        self._cameras, self._params, self._clock_ns = cameras, params, now_ns
-        self._joints, self._least_joints = joints, keypoint_params.least_joints
-        self._motion = MotionMonitor(motion)
+        self._cameras, self._params, self._clock_ns = cameras, params.start, now_ns
+        self._joints, self._least_joints = joints, params.keypoint_start.least_joints
+        self._hull_params = params.hull_start
+        self._motion = MotionMonitor(params.motion_monitor)
         self._by_keypoints = KeypointInitialiser(
-            silhouettes, floor, joints, views, cameras, params, keypoint_params
+            silhouettes, floor, joints, views, cameras, params.start, params.keypoint_start
         )
         self.reset()
 
@@ -116,6 +112,7 @@ class PersonSearch:
         """Cancels the search in progress."""
         self._under_way: Generator[None, None, _Likely | None] | None = None
         self._earlier: _Likely | None = None  # found in older pictures, to be refitted to the next
+        self._hull: list[HullCandidate] | None = None  # of the newest pictures that were searched
 
     def look(self, factors: Floats, information: Floats, t_ns: int) -> Found | None:
         """A person of this shape in the newest pictures, with the cameras that show it; None if none is confirmed yet or
@@ -186,7 +183,7 @@ class PersonSearch:
                     likely.append((fit, candidate))
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
-            found = yield from self._by_keypoints.look(factors, information)
+            found = yield from self._by_keypoints.look(factors, information, self._hull)
             return None if found is None else _from_keypoints(found, self._views.present)
         self._by_keypoints.reset()
         # prefer the nearer person: a passer-by is seldom in front
@@ -203,7 +200,7 @@ class PersonSearch:
         p = self._params
         self._update_foreground()
         if then.by_keypoints is not None:
-            found = self._by_keypoints.now(then.by_keypoints, p.walked_m)
+            found = self._by_keypoints.now(then.by_keypoints, p.walked_m, self._hull)
             return None if found is None else _from_keypoints(found, self._views.present)
         away_m, now = min(
             (
@@ -221,18 +218,27 @@ class PersonSearch:
         return (fit, now) if self._is_likely(fit) else None
 
     def _update_foreground(self) -> None:
-        """Segments the foreground of whole pictures, without a body."""
-        self._views.mark_body(None)
-        self._views.update_foreground()
-        self._views.remove_ghosts()
+        """Segments the foreground of whole pictures, without a body, and carves the hull if enough cameras are clear."""
+        views = self._views
+        views.mark_body(None)
+        views.update_foreground()
+        views.remove_ghosts()
+        foregrounds = {i: views.each[i].foreground for i in self._clear_cameras()}
+        scales = [view.image_scale for view in views.each]
+        self._hull = hull_candidates(foregrounds, self._cameras, scales, self._hull_params)
 
     def _standing_candidates(self, shadows: bool) -> list[_SearchCandidate]:
-        """The likeliest upright people in the foreground. shadows: include possible shadows."""
+        """The likeliest upright people in the foreground. shadows: include possible shadows, which the hull always does."""
         p, views = self._params, self._views
-        blobs = {i: blobs_of(views.each[i].foreground, shadows, p) for i in self._clear_cameras()}
-        scales = [view.image_scale for view in views.each]
-        stature_m = self._silhouettes.model.stature_m
-        people = person_candidates(blobs, self._cameras, scales, stature_m, p)[: p.people]
+        if self._hull is not None:
+            people = [] if shadows else [one.person for one in self._hull]
+        else:
+            blobs = {
+                i: blobs_of(views.each[i].foreground, shadows, p) for i in self._clear_cameras()
+            }
+            scales = [view.image_scale for view in views.each]
+            stature_m = self._silhouettes.model.stature_m
+            people = person_candidates(blobs, self._cameras, scales, stature_m, p)[: p.people]
         return [
             _SearchCandidate(person, shadows, views_of(person, views.present)) for person in people
         ]

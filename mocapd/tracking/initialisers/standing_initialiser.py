@@ -63,19 +63,35 @@ def blobs_of(before: Bytes, shadows: bool, params: StartParams) -> list[Blob]:
     order = sorted(range(1, n), key=lambda k: -int(stats[k, cv2.CC_STAT_AREA]))[: params.blobs]
     out = []
     for k in order:
-        top, height = int(stats[k, cv2.CC_STAT_TOP]), int(stats[k, cv2.CC_STAT_HEIGHT])
-        if stats[k, cv2.CC_STAT_AREA] >= params.least_px and height >= params.least_height_px:
-            left, width = int(stats[k, cv2.CC_STAT_LEFT]), int(stats[k, cv2.CC_STAT_WIDTH])
-            x0, y0 = max(left - _ABOUT_PX, 0) & ~1, max(top - _ABOUT_PX, 0) & ~1
-            x1 = min(left + width + _ABOUT_PX, before.shape[1]) & ~1
-            y1 = min(top + height + _ABOUT_PX, before.shape[0]) & ~1
-            here = np.s_[y0:y1, x0:x1]
-            piece = (numbered[here] == k).astype(np.uint8)
-            if np.count_nonzero(piece) < params.least_px:
-                continue
-            edges = top, top + height, float(middles[k, 0])
-            out.append(Blob(piece, has_background[here], (x0, y0, x1, y1), *edges))
+        left, top, width, height, area = stats[k].tolist()
+        if area >= params.least_px and height >= params.least_height_px:
+            piece = numbered == k
+            out.append(_blob(piece, before, (left, top, width, height), float(middles[k, 0])))
     return out
+
+
+def blob_within(before: Bytes, covered: Bytes) -> Blob | None:
+    """What stands, or throws a shadow, where `covered` (h,w) is not 0; None for nothing."""
+    mask = stands(before) & (covered > 0)
+    if not mask.any():
+        return None
+    left, top, width, height = cv2.boundingRect(mask.astype(np.uint8))
+    return _blob(mask, before, (left, top, width, height), float(np.nonzero(mask)[1].mean()))
+
+
+def _blob(
+    mask: NDArray[np.bool_], before: Bytes, box: tuple[int, int, int, int], middle_x: float
+) -> Blob:
+    """Of a mask (h,w) within a box: left, top, width, height."""
+    left, top, width, height = box
+    x0, y0 = max(left - _ABOUT_PX, 0) & ~1, max(top - _ABOUT_PX, 0) & ~1
+    x1 = min(left + width + _ABOUT_PX, before.shape[1]) & ~1
+    y1 = min(top + height + _ABOUT_PX, before.shape[0]) & ~1
+    here = np.s_[y0:y1, x0:x1]
+    has_background = before[here] != UNKNOWN
+    return Blob(
+        mask[here].astype(np.uint8), has_background, (x0, y0, x1, y1), top, top + height, middle_x
+    )
 
 
 def person_candidates(

@@ -52,8 +52,7 @@ class ClothesCue:
         self._solver = solver = ClothesSolver(rig, stature_m, p, each)
         self.cameras, self.model = solver.cameras, solver.model
         self._search = PersonSearch(
-            solver.silhouettes, solver.terms.floor, solver.terms.joints, solver.cameras, rig.cameras, p.start,
-            p.keypoint_start, p.motion_monitor, now_ns,
+            solver.silhouettes, solver.terms.floor, solver.terms.joints, solver.cameras, rig.cameras, p, now_ns,
         )  # fmt: skip
         self.reset()
 

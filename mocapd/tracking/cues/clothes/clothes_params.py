@@ -51,6 +51,25 @@ class StartParams:
 
 
 @dataclass(frozen=True, slots=True)
+class HullStartParams:
+    """Which part of the visual hull may be a person."""
+
+    cameras: int = 3  # least number of them, also in whose view a place is
+    half_width_m: float = 3.0  # of the space that is searched, about where the cameras look
+    low_m: float = 0.12  # its lower edge: light and shadows lie on the floor
+    high_m: float = 2.3
+    voxel_m: float = 0.08
+    # log-odds of the person, by what a pixel shows; one camera's background outweighs three others' foreground
+    before: float = 2.0
+    shadow: float = 0.5
+    background: float = -3.0
+    least_high_m: float = 0.16  # of the hull above a place of the floor
+    least_m3: float = 0.02  # a person has 0.07, and the hull of three cameras twice that
+    most_m3: float = 0.6
+    people: int = 3  # candidates
+
+
+@dataclass(frozen=True, slots=True)
 class KeypointStartParams:
     """When keypoints and a silhouette count as a person."""
 
@@ -109,6 +128,7 @@ class ClothesParams:
     background: BackgroundParams = field(default_factory=BackgroundParams)
     appearance: AppearanceParams = field(default_factory=AppearanceParams)
     start: StartParams = field(default_factory=StartParams)
+    hull_start: HullStartParams = field(default_factory=HullStartParams)
     keypoint_start: KeypointStartParams = field(default_factory=KeypointStartParams)
     motion_monitor: MotionMonitorParams = field(default_factory=MotionMonitorParams)
     floor: FloorParams = field(default_factory=FloorParams)

@@ -1,0 +1,97 @@
+"""Candidate people in the visual hull of three cameras or more.
+
+A blob of one picture may hold a person, the light on the floor before and somebody behind. In space these come apart: what
+stands above a place of the floor in the hull of all foregrounds is a candidate, and each camera's blob is the part of its
+foreground that the candidate covers. The carve is the soft one of `vision/hull/soft_carve.py`, so that possible shadows count
+little, and nothing is carved where a background is unknown.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mocapd.geometry.camera_model import common_place, project, to_camera
+from mocapd.tracking.cues.clothes.clothes_params import HullStartParams
+from mocapd.tracking.initialisers.standing_initialiser import Blob, PersonCandidate, blob_within
+from mocapd.types import Bytes, Camera, Floats, Singles
+from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, UNKNOWN
+from mocapd.vision.hull.ray_hull import views_of
+from mocapd.vision.hull.soft_carve import carve_log_odds, voxel_centres
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HullCandidate:
+    """A possible person with the middle of the body at middle_m (3,)."""
+
+    middle_m: Floats
+    person: PersonCandidate
+
+
+def hull_candidates(
+    foregrounds: Mapping[int, Bytes],
+    cameras: Sequence[Camera],
+    image_scales: Sequence[int],
+    params: HullStartParams,
+) -> list[HullCandidate] | None:
+    """The largest first; None with too few cameras for a hull.
+
+    foregrounds (h,w): labels by camera index; cameras, image_scales: all, with the factors between frames and pictures.
+    """
+    p = params
+    if len(foregrounds) < p.cameras:
+        return None
+    seeing = [cameras[i] for i in foregrounds]
+    points_m, (nx, ny, nz) = voxel_centres(_space(seeing, p), p.voxel_m)
+    maps = [_log_odds(labels, p) for labels in foregrounds.values()]
+    inside = carve_log_odds(seeing, maps, points_m) > 0.0
+    columns = (inside & (views_of(seeing, points_m) >= p.cameras)).reshape(nx, ny, nz)
+    is_high = p.voxel_m * columns.sum(axis=1) >= p.least_high_m
+    n, numbered = cv2.connectedComponents(is_high.astype(np.uint8))
+    parts = [points_m[(columns & (numbered == k)[:, None]).reshape(-1)] for k in range(1, n)]
+    parts = [one for one in parts if p.least_m3 <= len(one) * p.voxel_m**3 <= p.most_m3]
+    out = []
+    for part_m in sorted(parts, key=len, reverse=True)[: p.people]:
+        blobs = {
+            i: blob
+            for i, labels in foregrounds.items()
+            if (blob := _blob(labels, cameras[i], image_scales[i], part_m, p)) is not None
+        }
+        if len(blobs) > 1:
+            middle_m = 0.5 * (part_m.min(axis=0) + part_m.max(axis=0))
+            place_m = np.median(part_m, axis=0) * (1.0, 0.0, 1.0)
+            out.append(HullCandidate(middle_m, PersonCandidate(place_m, blobs, 0.0)))
+    return out
+
+
+def _space(cameras: Sequence[Camera], p: HullStartParams) -> Floats:
+    """(2,3): lower and upper corner of the space that is searched [m]."""
+    half = np.array([p.half_width_m, 0.0, p.half_width_m])
+    box = common_place(cameras) + np.stack([-half, half])
+    box[:, 1] = p.low_m, p.high_m
+    return np.asarray(box)
+
+
+def _log_odds(labels: Bytes, p: HullStartParams) -> Singles:
+    table = np.full(256, p.shadow, np.float32)
+    table[[BACKGROUND, BEFORE, UNKNOWN]] = p.background, p.before, 0.0
+    return np.asarray(table[labels], np.float32)
+
+
+def _blob(
+    labels: Bytes, camera: Camera, image_scale: int, part_m: Floats, p: HullStartParams
+) -> Blob | None:
+    """What of a camera's foreground (h,w) the voxels at part_m (P,3) cover."""
+    h, w = labels.shape
+    at = (project(camera, part_m) + 0.5) / image_scale - 0.5
+    xy = np.rint(np.nan_to_num(at, nan=-1.0)).astype(np.int64)
+    is_seen = ((xy >= 0) & (xy < (w, h))).all(axis=1)
+    if not is_seen.any():
+        return None
+    covered = np.zeros((h, w), np.uint8)
+    covered[xy[is_seen, 1], xy[is_seen, 0]] = 1
+    away_m = float(np.median(to_camera(camera, part_m[is_seen])[:, 2]))
+    side = 2 * int(np.ceil(p.voxel_m * camera.K[0, 0] / (image_scale * away_m))) + 1
+    about = np.asarray(cv2.dilate(covered, np.ones((side, side), np.uint8)), np.uint8)
+    return blob_within(labels, about)
