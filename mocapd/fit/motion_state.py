@@ -9,6 +9,7 @@ from mocapd.body.pose_space import PoseSpace, full_body
 from mocapd.body.posing_kernels import difference, retract
 from mocapd.body.shape import BodyShape
 from mocapd.body.skeleton import N_JOINTS
+from mocapd.geometry import rotations
 from mocapd.types import Floats
 
 
@@ -76,6 +77,13 @@ def predict_state(
     """The state after dt_s at its velocity, see `predict_pose`."""
     root, local = predict_pose(model, state, dt_s, damping)
     return replace(state, root_m=root, local_xyzw=local)
+
+
+def turned_about_vertical(state: MotionState, turn_rad: float) -> MotionState:
+    """The same body, turned on the spot."""
+    local = state.local_xyzw.copy()
+    local[0] = rotations.multiply(rotations.exp(np.array([0.0, turn_rad, 0.0])), local[0])
+    return replace(state, local_xyzw=rotations.canonical(local))
 
 
 def step_between(model: BodyModel, a: tuple[Floats, Floats], b: tuple[Floats, Floats]) -> Floats:

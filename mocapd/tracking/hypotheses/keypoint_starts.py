@@ -3,12 +3,10 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from mocapd.body.skeleton import INDEX, OTHER_SIDE
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.two_bone_ik import LIMBS, two_bone_pose
-from mocapd.fit.motion_state import MotionState
+from mocapd.fit.motion_state import MotionState, turned_about_vertical
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.term import Term
@@ -103,9 +101,7 @@ def fit_to_keypoints(
     """A pose fitted to the keypoints alone from this state; `limbs` start from two-bone IK."""
     turn_rad = keypoints.turn_rad(fitter.joints(state)[0])
     if abs(turn_rad) > params.turned_rad:
-        local = state.local_xyzw.copy()
-        local[0] = rotations.multiply(rotations.exp(np.array([0.0, turn_rad, 0.0])), local[0])
-        state = replace(state, local_xyzw=rotations.canonical(local))
+        state = turned_about_vertical(state, turn_rad)
     state = _bent(fitter, state, keypoints, limbs)
     terms = (*held, keypoints.trusting)
     return fitter.fit(state, (), params.loose_s, params.iterations, terms=terms).state

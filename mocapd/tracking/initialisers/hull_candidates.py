@@ -47,8 +47,10 @@ def hull_candidates(
     maps = [_log_odds(labels, p) for labels in foregrounds.values()]
     inside = carve_log_odds(seeing, maps, points_m) > 0.0
     columns = (inside & (views_of(seeing, points_m) >= p.cameras)).reshape(nx, ny, nz)
-    is_high = p.voxel_m * columns.sum(axis=1) >= p.least_high_m
-    n, numbered = cv2.connectedComponents(is_high.astype(np.uint8))
+    # light on the floor makes a flat hull, which takes in no arm held out
+    is_person = p.voxel_m * columns.sum(axis=1) >= p.least_high_m
+    is_person |= columns[:, int((p.arms_m - p.low_m) / p.voxel_m) :].any(axis=1)
+    n, numbered = cv2.connectedComponents(is_person.astype(np.uint8))
     parts = [points_m[(columns & (numbered == k)[:, None]).reshape(-1)] for k in range(1, n)]
     parts = [one for one in parts if p.least_m3 <= len(one) * p.voxel_m**3 <= p.most_m3]
     out = []

@@ -7,6 +7,7 @@ import numpy as np
 
 from mocapd.clock import nanoseconds
 from mocapd.fit.fit_result import Fit
+from mocapd.fit.motion_state import turned_about_vertical
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.view import View
@@ -179,8 +180,9 @@ class PersonSearch:
                     (self._floor,),
                     p,
                 )
-                if self._is_likely(fit) and self._is_person(fit, candidate):
-                    likely.append((fit, candidate))
+                person = self._as_person(fit, candidate) if self._is_likely(fit) else None
+                if person is not None:
+                    likely.append((person, candidate))
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
             found = yield from self._by_keypoints.look(factors, information, self._hull)
@@ -255,13 +257,26 @@ class PersonSearch:
     def _is_likely(self, fit: Fit) -> bool:
         return fit.explained >= self._params.likely_explained and is_upright(self._silhouettes, fit)
 
-    def _is_person(self, fit: Fit, candidate: _SearchCandidate) -> bool:
-        """False if the heatmaps of all pictures that show enough keypoints are as blurred as for furniture."""
-        detect = self._joints.detector(self._silhouettes, fit.state, self._views)
-        terms = self._joints.term(self._silhouettes.model, map(detect, candidate.person.blobs))
+    def _as_person(self, fit: Fit, candidate: _SearchCandidate) -> Fit | None:
+        """The fit, turned about if keypoints say so: silhouettes of cameras all around hardly tell front from back. None if
+        the heatmaps of all pictures that show enough keypoints are as blurred as for furniture."""
+        p, fitter = self._params, self._silhouettes
+        detect = self._joints.detector(fitter, fit.state, self._views)
+        terms = self._joints.term(fitter.model, map(detect, candidate.person.blobs))
         spreads_m = [one for term in terms for one in term.median_spreads_m(self._least_joints)]
         finite_m = [spread_m for spread_m in spreads_m if spread_m < np.inf]
-        return not finite_m or min(finite_m) <= self._params.spread_m
+        if not finite_m:
+            return fit
+        if min(finite_m) > p.spread_m:
+            return None
+        turn_rad = terms[0].turn_rad(fitter.joints(fit.state)[0])
+        if abs(turn_rad) < p.turned_rad:
+            return fit
+        turned = turned_about_vertical(fit.state, turn_rad)
+        other = fit_to_blobs(
+            fitter, candidate.views, turned, p.iterations, (self._floor, *terms), p
+        )
+        return other if other.explained > fit.explained - p.turned_less else fit
 
     def _names(self, candidate: _SearchCandidate) -> tuple[str, ...]:
         return tuple(self._views.each[i].name for i in candidate.person.blobs)

@@ -42,6 +42,10 @@ class StartParams:
         0.08  # of such agreement, that a person one metre farther away must have more
     )
     people: int = 2  # candidates that are fitted; the best one is taken
+    turned_rad: float = (
+        1.6  # between the facing of fit and keypoints, above which the body is turned about,
+    )
+    turned_less: float = 0.1  # unless silhouette and body then agree by so much less
     longest_s: float = 0.5  # of a search in one frame set, before it continues in the next
     walked_m: float = 1.0  # by the person during the search, at most
     pause_s: float = 0.2  # between attempts that failed
@@ -63,7 +67,8 @@ class HullStartParams:
     before: float = 2.0
     shadow: float = 0.5
     background: float = -3.0
-    least_high_m: float = 0.16  # of the hull above a place of the floor
+    least_high_m: float = 0.16  # of the hull above a place of the floor,
+    arms_m: float = 0.5  # unless it reaches above this
     least_m3: float = 0.02  # a person has 0.07, and the hull of three cameras twice that
     most_m3: float = 0.6
     people: int = 3  # candidates
