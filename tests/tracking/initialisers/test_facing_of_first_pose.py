@@ -1,0 +1,92 @@
+"""Cameras all around see nearly the same outline of a front and of a back: keypoints say which it is."""
+
+from collections.abc import Callable, Iterable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mocapd.body.skeleton import INDEX
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.tracking.cues.clothes.regions import silhouette_labels
+from mocapd.tracking.initialisers.person_search import PersonSearch
+from mocapd.types import Floats
+from mocapd.vision.foreground_kernels import BEFORE
+from tests.geometry.rigs import ring
+from tests.tracking.initialisers.test_standing_initialiser import BODY, FACTOR, turned
+
+pytestmark = pytest.mark.kernels
+
+CAMERAS = ring(4, 3.2)
+ACROSS = [INDEX["leftUpperLeg"], INDEX["rightUpperLeg"]]
+
+
+def facing_rad(joints_m: Floats) -> float:
+    left, right = joints_m[ACROSS]
+    return float(np.arctan2(right[2] - left[2], left[0] - right[0]))
+
+
+class Keypoints:
+    """Stands in for the detectors and their term: sharp keypoints of a body that faces this way, or none of both hips."""
+
+    is_measured = False
+
+    def __init__(self, true_rad: float) -> None:
+        self._true_rad = true_rad
+
+    def detector(self, *_: object) -> Callable[[int], int]:
+        return int
+
+    def term(self, _: object, __: Iterable[int]) -> tuple["Keypoints"]:
+        return (self,)
+
+    def median_spreads_m(self, _: int) -> list[float]:
+        return [0.04]
+
+    def turn_rad(self, joints_m: Floats) -> float:
+        off = self._true_rad - facing_rad(joints_m)
+        return float(np.angle(np.exp(1j * off)))
+
+    def add(self, *_: object) -> float:
+        return 0.0
+
+
+def found(state: MotionState, fitter: Fitter, keypoints: Keypoints) -> Floats:
+    """Joints (J,3) of the first pose of somebody before cameras all around."""
+    views = []
+    for drawing in fitter.drawings:
+        foreground = np.zeros((240, 320), np.uint8)
+        roi = drawing.region(state, 0.0, 10)
+        assert roi is not None
+        x0, y0, x1, y1 = roi
+        foreground[y0:y1, x0:x1] = np.where(drawing.render(state, 0.0, roi) > 0, BEFORE, 0)
+        views.append(SimpleNamespace(foreground=foreground, image_scale=FACTOR, name="a camera"))
+
+    def nothing(*_: object) -> None: ...
+
+    shown: Any = SimpleNamespace(
+        each=views, present=dict.fromkeys(range(4), 0.0), are_new=False, mark_body=nothing, update_foreground=nothing,
+        remove_ghosts=nothing,
+    )  # fmt: skip
+    detectors: Any = keypoints
+    search = PersonSearch(
+        fitter, FloorTerm(BODY), detectors, shown, CAMERAS, ClothesParams(), lambda: 0
+    )
+    person = search.look(state.factors, state.information, 0)
+    assert person is not None
+    return fitter.joints(person[0].state)[0]
+
+
+@pytest.mark.parametrize("yaw_rad", [-2.4, -0.8, 0.7, 2.2])
+def test_the_first_pose_faces_as_keypoints_do(yaw_rad: float) -> None:
+    fitter = Fitter(BODY, silhouette_labels(BODY), CAMERAS, [FACTOR] * 4, FitParams(iterations=6))
+    state = turned(yaw_rad)
+    for seen in (yaw_rad, yaw_rad + np.pi):  # whichever way the outlines led
+        joints_m = found(state, fitter, Keypoints(seen))
+        off_rad = np.angle(np.exp(1j * (facing_rad(joints_m) - seen)))
+        assert abs(off_rad) < 1.2
