@@ -105,32 +105,33 @@ def shown(browser: Browser, server: WebServer, host: TinyHost) -> Iterator[Shown
         assert heard == []
 
 
-@pytest.mark.parametrize("name", PAGES)
 def test_instruction_and_its_one_button_are_in_sight_at_every_size(
-    shown: Shown, pictures: Path, name: str
+    shown: Shown, pictures: Path
 ) -> None:
-    step, view = PAGES[name]
-    shown.show(step, view)
-    for size_name, size in SIZES.items():
-        shown.page.set_viewport_size(size)
-        shown.page.wait_for_timeout(200)
-        for scrolled in (0, 100_000):
-            shown.page.evaluate(f"scrollTo(0, {scrolled})")
-            expect(shown.page.locator(ONE_BUTTON[name])).to_be_in_viewport(ratio=1)
-            expect(shown.page.locator("#sentence")).to_be_in_viewport(ratio=1)
-        across = shown.page.evaluate("document.documentElement.scrollWidth")
-        assert across <= size["width"], "nothing is cut off at the side"
-        if not FOR_THE_DOCS:
-            continue
-        shown.page.evaluate("scrollTo(0, 0)")
-        shown.page.wait_for_timeout(200)
-        shown.page.screenshot(path=pictures / f"step-{name}-{size_name}.png", full_page=True)
+    """On one page after the other, as in a setup: to load one takes longer than to look at it."""
+    for name, (step, view) in PAGES.items():
+        shown.show(step, view)
+        for size_name, size in SIZES.items():
+            shown.page.set_viewport_size(size)
+            shown.page.wait_for_timeout(200)
+            for scrolled in (0, 100_000):
+                shown.page.evaluate(f"scrollTo(0, {scrolled})")
+                for seen in (ONE_BUTTON[name], "#sentence"):
+                    expect(shown.page.locator(seen), name).to_be_in_viewport(ratio=1)
+            across = shown.page.evaluate("document.documentElement.scrollWidth")
+            assert across <= size["width"], f"{name}: nothing is cut off at the side"
+            if not FOR_THE_DOCS:
+                continue
+            shown.page.evaluate("scrollTo(0, 0)")
+            shown.page.wait_for_timeout(200)
+            shown.page.screenshot(path=pictures / f"step-{name}-{size_name}.png", full_page=True)
 
 
-@pytest.mark.parametrize("name", [*PAGES, "body_done"])
-def test_one_button_at_most_is_the_one_to_press(shown: Shown, name: str) -> None:
-    shown.show(*{**PAGES, "body_done": (StepName.BODY, body(measured=True))}[name])
-    assert shown.page.locator(".step-buttons .primary:visible").count() <= 1
+def test_one_button_at_most_is_the_one_to_press(shown: Shown) -> None:
+    pages = {**PAGES, "body_done": (StepName.BODY, body(measured=True))}
+    for name, (step, view) in pages.items():
+        shown.show(step, view)
+        assert shown.page.locator(".step-buttons .primary:visible").count() <= 1, name
 
 
 def test_back_leads_to_the_step_before(shown: Shown) -> None:
