@@ -13,7 +13,7 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.messages import CalibrationInfo, RestSkeleton, StateMessage
 from mocapd.outputs.wire import SkeletonFrame
-from tests.cli.mocapd_process import mocapd
+from tests.cli.mocapd_process import mocapd, mocapd_here
 from tests.outputs.recorded import LATENCY_NS, farthest_m, frames, record
 
 PATIENCE_S = 30.0
@@ -119,6 +119,6 @@ def test_the_command_plays_without_cameras(tmp_path: Path, clean_env: dict[str, 
     )
     assert (done.code, done.out) == (0, "")
     assert "12 frames sent" in done.err
-    wrong = mocapd(clean_env, "replay", path, "--output", "smoke")
+    wrong = mocapd_here(clean_env, "replay", path, "--output", "smoke")
     assert wrong.code == 2
     assert "one of: zenoh, osc" in wrong.err

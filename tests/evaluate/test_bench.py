@@ -15,7 +15,7 @@ from mocapd.session.tracker_setup import ReadyTracker
 from mocapd.trackers.canned.tracker import CannedTracker
 from mocapd.tracking.base import Track, Tracker
 from mocapd.types import BodyState, Frame, FrameSet
-from tests.cli.mocapd_process import mocapd
+from tests.cli.mocapd_process import mocapd, mocapd_here
 from tests.cli.small_capture import FRAMES, write_capture
 
 pytestmark = pytest.mark.kernels
@@ -116,12 +116,12 @@ def test_it_prints_one_object(clean_env: dict[str, str], tmp_path: Path) -> None
 
 def test_it_prints_tables(clean_env: dict[str, str], tmp_path: Path) -> None:
     capture = write_capture(tmp_path / "office")
-    outcome = mocapd(clean_env, "bench", "--tracker", "canned", "--capture", capture)
+    outcome = mocapd_here(clean_env, "bench", "--tracker", "canned", "--capture", capture)
     assert outcome.code == 0, outcome.err
     assert "| canned  |   10 |" in outcome.out
 
 
 def test_a_recording_cannot_be_a_webcam(clean_env: dict[str, str], tmp_path: Path) -> None:
-    outcome = mocapd(clean_env, "bench", "--live", "--capture", tmp_path)
+    outcome = mocapd_here(clean_env, "bench", "--live", "--capture", tmp_path)
     assert outcome.code == 2
     assert "sim:SCENARIO" in outcome.err

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from tests.cli.mocapd_process import mocapd
+from tests.cli.mocapd_process import mocapd, mocapd_here
 
 SCENARIO = """
 name = "small"
@@ -49,6 +49,6 @@ def test_a_daemon_that_nobody_can_hear_is_refused(
     scenario.write_text(SCENARIO)
     silent = ("--set", "zenoh.enabled=false")
     words = ("--tracker", "canned", "--live", "--seconds", "1", *silent)
-    outcome = mocapd(clean_env, "bench", "--capture", f"sim:{scenario}", *words)
+    outcome = mocapd_here(clean_env, "bench", "--capture", f"sim:{scenario}", *words)
     assert outcome.code == 78
     assert "zenoh.enabled" in outcome.err

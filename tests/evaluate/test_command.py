@@ -24,7 +24,7 @@ def capture(cache_home: Path) -> Path:
 
 
 def test_its_help_has_an_example(clean_env: dict[str, str]) -> None:
-    outcome = mocapd(clean_env, "eval", "--help")
+    outcome = mocapd_here(clean_env, "eval", "--help")
     assert outcome.code == 0
     assert "Example: mocapd eval" in outcome.out
 
@@ -50,7 +50,7 @@ def test_it_prints_a_table_and_writes_the_page(
 def test_json_holds_the_same_figures_as_the_tables(
     capture: Path, clean_env: dict[str, str]
 ) -> None:
-    outcome = mocapd(clean_env, "eval", capture, capture, "--tracker", "canned", "--json")
+    outcome = mocapd_here(clean_env, "eval", capture, capture, "--tracker", "canned", "--json")
     assert outcome.code == 0, outcome.err
     told = json.loads(outcome.out)
     assert told["tracker"] == "canned"
@@ -76,7 +76,7 @@ def test_a_capture_without_truth_is_one_clear_line(
     blind = tmp_path / "blind"
     shutil.copytree(capture, blind)
     (blind / "truth.npz").unlink()
-    outcome = mocapd(clean_env, "eval", capture, blind, "--tracker", "canned")
+    outcome = mocapd_here(clean_env, "eval", capture, blind, "--tracker", "canned")
     assert outcome.code == 66
     assert outcome.out == ""
     assert outcome.err.count("\n") == 1

@@ -16,7 +16,7 @@ from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.wire import SkeletonFrame
-from tests.cli.mocapd_process import mocapd
+from tests.cli.mocapd_process import mocapd, mocapd_here
 from tests.outputs.recorded import frame_at, frames, moving_body, record, rest
 
 
@@ -139,4 +139,4 @@ def test_the_command(tmp_path: Path, clean_env: dict[str, str]) -> None:
     assert done.code == 0
     assert "30 frames at 60 Hz" in done.err
     assert (tmp_path / "a.glb").read_bytes()[:4] == b"glTF"
-    assert mocapd(clean_env, "export", path, "--to", "fbx").code == 2
+    assert mocapd_here(clean_env, "export", path, "--to", "fbx").code == 2
