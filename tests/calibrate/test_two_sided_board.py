@@ -212,7 +212,10 @@ def test_the_back_is_measured_since_a_thickness_or_gluing_taken_for_granted_cost
         board = replace(board, back_shift_m=(0.0, 0.0), back_turn_rad=0.0)
     views = views_of(RIG, POSES, board)
     off_cm = {}
-    for how, mean_m in (("measured", None), ("thickness known", thickness_m), ("taken as 0", 0.0)):
+    ways = {"measured": None, "thickness known": thickness_m}
+    if thickness_m > 0.0:
+        ways["taken as 0"] = 0.0
+    for how, mean_m in ways.items():
         known = None if mean_m is None else GluingPrior((0.0, 0.0, 0.0, mean_m), (1e-7,) * 4)
         # what is taken for granted wrongly is refused otherwise
         error_m, scale = off_m(RIG, solved(views, gluing=known, place_cm=100.0).rig)
