@@ -5,9 +5,7 @@ from pathlib import Path
 from lab.compared.compare import BASELINE, shoulder_angles
 from lab.compared.compared_runs import EvaluationResults
 from lab.compared.comparison_report import comparison_tables, roc_table
-from lab.pages.plots import roc_plot, shoulder_plot
 from mocapd.evaluate import score_page
-from mocapd.evaluate.plots import save
 from mocapd.evaluate.write_out import write_out
 
 SHOULDER_PLOT = "images/eval_shoulder.png"
@@ -86,6 +84,10 @@ def page(findings: EvaluationResults, command: str) -> str:
 
 def write_page(directory: Path, findings: EvaluationResults, command: str) -> list[Path]:
     """Write the page and its plots; the paths. Raises CannotCreateError."""
+    # matplotlib takes a second to import
+    from lab.pages.plots import roc_plot, shoulder_plot
+    from mocapd.evaluate.plots import save
+
     path = directory / score_page.PAGE
     write_out(path, page(findings, command), force=True)
     written = [

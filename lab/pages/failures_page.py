@@ -7,11 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from lab.pages.plots import recovery_plot
 from lab.simulated.failure_scenes import FAILURE_SCENES
 from lab.simulated.session_plan import PlannedSession
 from mocapd.evaluate.capture_eval import CaptureResult
-from mocapd.evaluate.plots import save
 from mocapd.evaluate.recovery import CLEAR_LIMIT_M, frame_errors_m
 from mocapd.evaluate.tables import number, table
 from mocapd.evaluate.write_out import write_out
@@ -146,6 +144,10 @@ def write_page(
     command: str,
 ) -> list[Path]:
     """Write the page and its plot; the paths. Raises CannotCreateError."""
+    # matplotlib takes a second to import
+    from lab.pages.plots import recovery_plot
+    from mocapd.evaluate.plots import save
+
     path = directory / PAGE
     text = _PAGE.format(
         command=command,

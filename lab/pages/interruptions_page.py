@@ -3,16 +3,17 @@
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lab.pages.plots import Spans, cues_plot
 from lab.studies.cue_changes import APPROACH_S, Interruptions
-from mocapd.evaluate.plots import save
 from mocapd.evaluate.tables import number, table
 from mocapd.evaluate.write_out import write_out
 from mocapd.sim.scenario import Scenario
+
+if TYPE_CHECKING:  # matplotlib takes a second to import
+    from lab.pages.plots import Spans
 
 PAGE = "cues.md"
 PLOT = "images/cues.png"
@@ -48,7 +49,7 @@ tracker's error; at a change: in the {approach_s:g} s in which the published pos
 """
 
 
-def spans_of(scenario: Scenario) -> dict[str, Spans]:
+def spans_of(scenario: Scenario) -> "dict[str, Spans]":
     """What interrupts, from when to when."""
     jacket = scenario.clothes.events
     dark = [light.events for light in scenario.lights if light.events]
@@ -109,10 +110,13 @@ def as_json(of: Interruptions) -> dict[str, Any]:
 def write_page(
     directory: Path,
     of: Interruptions,
-    spans: Mapping[str, Spans],
+    spans: "Mapping[str, Spans]",
     command: str,
 ) -> list[Path]:
     """Write the page and its plot; the paths. Raises CannotCreateError."""
+    from lab.pages.plots import cues_plot
+    from mocapd.evaluate.plots import save
+
     path = directory / PAGE
     text = _PAGE.format(
         command=command, plot=PLOT, figures=figures_table(of), changes=changes_table(of), errors=errors_table(of),
