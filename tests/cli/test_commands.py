@@ -5,7 +5,6 @@ import os
 import shlex
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,8 @@ from mocapd.config.sections import Config
 from mocapd.outputs.output_table import ZenohSection
 from tests.cli.mocapd_process import COMMAND, mocapd, mocapd_here
 from tests.cli.small_capture import FRAMES, write_capture
+from tests.sim.kept_capture import kept_capture
+from tests.sim.small import scenario
 
 COMMANDS = ("run", "demo", "track", "watch", "cameras", "check-config", "version")
 
@@ -120,9 +121,11 @@ def test_track_writes_every_frame_and_the_same_bytes_twice(
 
 
 def test_score_track_reads_what_track_writes(
-    clean_env: dict[str, str], tmp_path: Path, dev_captures: Callable[[str], Path], shared_dir: Path
+    clean_env: dict[str, str], tmp_path: Path, cache_home: Path, shared_dir: Path
 ) -> None:
-    capture, out = dev_captures("mono_shirt_signals"), tmp_path / "t.npz"
+    # as in tests/evaluate/test_command.py, so that one capture serves both
+    capture = kept_capture(scenario(person_appears_s=0.2), 1.5, cache_home)
+    out = tmp_path / "t.npz"
     assert mocapd_here(clean_env, "track", capture, "--out", out, "--tracker", "canned").code == 0
     score = [sys.executable, str(shared_dir / "tools" / "score_track.py"), str(capture), str(out)]
     done = subprocess.run([*score, "--json"], capture_output=True, text=True, check=True)
