@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.clock import nanoseconds
+from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import turned_about_vertical
 from mocapd.fit.solver import Fitter
@@ -107,7 +107,12 @@ class PersonSearch:
         self._likely_m: list[Floats] = []
         self._by_keypoints.reset()
         self._motion.reset()
+        self._last: tuple[Floats, int] | None = None
         self.give_up()
+
+    def on_body(self, root_m: Floats, t_ns: int) -> None:
+        """Remembers where (3,) and when the tracked person was."""
+        self._last = root_m, t_ns
 
     def give_up(self) -> None:
         """Cancels the search in progress."""
@@ -134,7 +139,7 @@ class PersonSearch:
             self._motion.update(
                 t_ns, {i: self._views.each[i].foreground for i in self._views.present}
             )
-            self._under_way = self._search(factors, information)
+            self._under_way = self._search(factors, information, t_ns)
         until_ns = self._clock_ns() + nanoseconds(self._params.longest_s)
         try:
             next(self._under_way)
@@ -162,7 +167,7 @@ class PersonSearch:
         return self._motion.reason(t_ns)
 
     def _search(
-        self, factors: Floats, information: Floats
+        self, factors: Floats, information: Floats, t_ns: int
     ) -> Generator[None, None, _Likely | None]:
         """A whole search of the newest foreground. Yields after each fit, so that a later frame set may continue it."""
         p = self._params
@@ -180,13 +185,17 @@ class PersonSearch:
                     (self._floor,),
                     p,
                 )
-                person = self._as_person(fit, candidate) if self._is_likely(fit) else None
+                if not self._is_likely(fit) or not self._is_in_reach(fit, t_ns):
+                    continue
+                person = self._as_person(fit, candidate)
                 if person is not None:
                     likely.append((person, candidate))
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
             found = yield from self._by_keypoints.look(factors, information, self._hull)
-            return None if found is None else _from_keypoints(found, self._views.present)
+            if found is None or not self._is_in_reach(found.fit, t_ns):
+                return None
+            return _from_keypoints(found, self._views.present)
         self._by_keypoints.reset()
         # prefer the nearer person: a passer-by is seldom in front
         fit, candidate = max(
@@ -256,6 +265,15 @@ class PersonSearch:
 
     def _is_likely(self, fit: Fit) -> bool:
         return fit.explained >= self._params.likely_explained and is_upright(self._silhouettes, fit)
+
+    def _is_in_reach(self, fit: Fit, t_ns: int) -> bool:
+        """False for somebody where the person who was lost a moment ago cannot have walked."""
+        if self._last is None:
+            return True
+        root_m, then_ns = self._last
+        walked_m = self._params.walks_m_s * seconds(t_ns - then_ns)
+        away_m = float(np.linalg.norm(fit.state.root_m - root_m))
+        return away_m <= self._params.same_place_m + walked_m
 
     def _as_person(self, fit: Fit, candidate: _SearchCandidate) -> Fit | None:
         """The fit, turned about if keypoints say so: silhouettes of cameras all around hardly tell front from back. None if

@@ -151,9 +151,12 @@ class ClothesCue:
         probe: Probe,
     ) -> ClothesEstimate | None:
         """Fits the whole body, dt_s after `state`; None if too little of it is visible."""
-        return self._solver.fit_whole_body(
+        found = self._solver.fit_whole_body(
             state, observed, dt_s, frames, self._ticks, self._measures_depths, probe
         )
+        if found is not None:
+            self._search.on_body(found.motion.root_m, frames.t_ns)
+        return found
 
     def fit_lower_body(
         self,
@@ -171,6 +174,7 @@ class ClothesCue:
         ticks = replace(self._ticks, frame_index=self._legs.turn(self._ticks.frame_index))
         found = self._solver.fit_lower_body(state, start, observed, dt_s, frames, ticks, probe)
         if found is not None:
+            self._search.on_body(found.motion.root_m, frames.t_ns)
             joints_m, _ = self.fitter.joints(found.motion)
             crossing = not self.fitter.has_small_baseline(found.motion, found.views)
             self._legs.on_fit(joints_m, self._ticks.last, crossing)

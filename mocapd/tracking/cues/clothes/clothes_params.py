@@ -48,6 +48,9 @@ class StartParams:
     turned_less: float = 0.1  # unless silhouette and body then agree by so much less
     longest_s: float = 0.5  # of a search in one frame set, before it continues in the next
     walked_m: float = 1.0  # by the person during the search, at most
+    walks_m_s: float = (
+        1.5  # since the person was tracked last: who is farther away is somebody else
+    )
     pause_s: float = 0.2  # between attempts that failed
     most_rest_s: float = (
         2.0  # a slower piece is followed by a pause as long as itself, at most this

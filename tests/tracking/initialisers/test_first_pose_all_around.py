@@ -1,6 +1,6 @@
-"""Cameras all around see nearly the same outline of a front and of a back: keypoints say which it is."""
+"""The first pose before cameras all around: keypoints tell a front from a back, and a place tells who was tracked before."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import INDEX
+from mocapd.clock import nanoseconds
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
@@ -23,6 +24,7 @@ from tests.tracking.initialisers.test_standing_initialiser import BODY, FACTOR, 
 pytestmark = pytest.mark.kernels
 
 CAMERAS = ring(4, 3.2)
+FITTER = Fitter(BODY, silhouette_labels(BODY), CAMERAS, [FACTOR] * 4, FitParams(iterations=6))
 ACROSS = [INDEX["leftUpperLeg"], INDEX["rightUpperLeg"]]
 
 
@@ -35,6 +37,7 @@ class Keypoints:
     """Stands in for the detectors and their term: sharp keypoints of a body that faces this way, or none of both hips."""
 
     is_measured = False
+    rays = ()  # for a pose from them alone there are too few
 
     def __init__(self, true_rad: float) -> None:
         self._true_rad = true_rad
@@ -56,15 +59,18 @@ class Keypoints:
         return 0.0
 
 
-def found(state: MotionState, fitter: Fitter, keypoints: Keypoints) -> Floats:
-    """Joints (J,3) of the first pose of somebody before cameras all around."""
+def search_among(
+    people: Sequence[MotionState], fitter: Fitter, keypoints: Keypoints
+) -> PersonSearch:
+    """Before cameras all around."""
     views = []
     for drawing in fitter.drawings:
         foreground = np.zeros((240, 320), np.uint8)
-        roi = drawing.region(state, 0.0, 10)
-        assert roi is not None
-        x0, y0, x1, y1 = roi
-        foreground[y0:y1, x0:x1] = np.where(drawing.render(state, 0.0, roi) > 0, BEFORE, 0)
+        for state in people:
+            roi = drawing.region(state, 0.0, 10)
+            assert roi is not None
+            x0, y0, x1, y1 = roi
+            foreground[y0:y1, x0:x1][drawing.render(state, 0.0, roi) > 0] = BEFORE
         views.append(SimpleNamespace(foreground=foreground, image_scale=FACTOR, name="a camera"))
 
     def nothing(*_: object) -> None: ...
@@ -74,19 +80,34 @@ def found(state: MotionState, fitter: Fitter, keypoints: Keypoints) -> Floats:
         remove_ghosts=nothing,
     )  # fmt: skip
     detectors: Any = keypoints
-    search = PersonSearch(
+    return PersonSearch(
         fitter, FloorTerm(BODY), detectors, shown, CAMERAS, ClothesParams(), lambda: 0
     )
-    person = search.look(state.factors, state.information, 0)
-    assert person is not None
-    return fitter.joints(person[0].state)[0]
+
+
+def first_pose(search: PersonSearch, state: MotionState, t_ns: int = 0) -> MotionState | None:
+    found = search.look(state.factors, state.information, t_ns)
+    return None if found is None else found[0].state
 
 
 @pytest.mark.parametrize("yaw_rad", [-2.4, -0.8, 0.7, 2.2])
 def test_the_first_pose_faces_as_keypoints_do(yaw_rad: float) -> None:
-    fitter = Fitter(BODY, silhouette_labels(BODY), CAMERAS, [FACTOR] * 4, FitParams(iterations=6))
     state = turned(yaw_rad)
     for seen in (yaw_rad, yaw_rad + np.pi):  # whichever way the outlines led
-        joints_m = found(state, fitter, Keypoints(seen))
-        off_rad = np.angle(np.exp(1j * (facing_rad(joints_m) - seen)))
+        found = first_pose(search_among([state], FITTER, Keypoints(seen)), state)
+        assert found is not None
+        off_rad = np.angle(np.exp(1j * (facing_rad(FITTER.joints(found)[0]) - seen)))
         assert abs(off_rad) < 1.2
+
+
+def test_who_was_tracked_a_moment_ago_is_not_taken_for_somebody_else() -> None:
+    """The one who was tracked has left the cameras' view."""
+    other = turned(0.7)
+    search = search_among([other], FITTER, Keypoints(0.7))
+    search.on_body(other.root_m + np.array([2.5, 0.0, 0.0]), 0)
+    assert first_pose(search, other, nanoseconds(1.0)) is None
+    found = first_pose(search, other, nanoseconds(2.0))  # by then they may have walked here
+    assert found is not None
+    assert np.linalg.norm(found.root_m - other.root_m) < 0.1
+    search.on_body(other.root_m + np.array([0.5, 0.0, 0.0]), nanoseconds(3.0))
+    assert first_pose(search, other, nanoseconds(3.5)) is not None
