@@ -197,10 +197,7 @@ class PersonSearch:
                 return None
             return _from_keypoints(found, self._views.present)
         self._by_keypoints.reset()
-        # prefer the nearer person: a passer-by is seldom in front
-        fit, candidate = max(
-            likely, key=lambda one: one[0].explained - p.farther_per_m * self._away_m(one[0])
-        )
+        fit, candidate = max(likely, key=lambda one: self._worth(one[0], t_ns))
         again = any(np.linalg.norm(fit.state.root_m - one) < p.same_place_m for one in last)
         if fit.explained < p.accept_explained and not again:
             return None
@@ -266,14 +263,24 @@ class PersonSearch:
     def _is_likely(self, fit: Fit) -> bool:
         return fit.explained >= self._params.likely_explained and is_upright(self._silhouettes, fit)
 
+    def _worth(self, fit: Fit, t_ns: int) -> float:
+        """Agreement, less what a person farther from the cameras must have more, as a passer-by is seldom in front, and one
+        farther from where somebody was tracked, the less the longer that is ago."""
+        away_m, ago_s = self._from_last(fit, t_ns)
+        elsewhere = self._params.elsewhere_per_m * away_m / (1.0 + ago_s)
+        return fit.explained - self._params.farther_per_m * self._away_m(fit) - elsewhere
+
     def _is_in_reach(self, fit: Fit, t_ns: int) -> bool:
         """False for somebody where the person who was lost a moment ago cannot have walked."""
+        away_m, ago_s = self._from_last(fit, t_ns)
+        return away_m <= self._params.same_place_m + self._params.walks_m_s * ago_s
+
+    def _from_last(self, fit: Fit, t_ns: int) -> tuple[float, float]:
+        """Distance from where a person was tracked last [m], and how long ago [s]; 0 and inf if nobody was."""
         if self._last is None:
-            return True
+            return 0.0, np.inf
         root_m, then_ns = self._last
-        walked_m = self._params.walks_m_s * seconds(t_ns - then_ns)
-        away_m = float(np.linalg.norm(fit.state.root_m - root_m))
-        return away_m <= self._params.same_place_m + walked_m
+        return float(np.linalg.norm(fit.state.root_m - root_m)), seconds(t_ns - then_ns)
 
     def _as_person(self, fit: Fit, candidate: _SearchCandidate) -> Fit | None:
         """The fit, turned about if keypoints say so: silhouettes of cameras all around hardly tell front from back. None if

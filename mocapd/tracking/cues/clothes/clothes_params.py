@@ -41,6 +41,7 @@ class StartParams:
     farther_per_m: float = (
         0.08  # of such agreement, that a person one metre farther away must have more
     )
+    elsewhere_per_m: float = 0.3  # likewise, away from where somebody was tracked a moment ago
     people: int = 2  # candidates that are fitted; the best one is taken
     turned_rad: float = (
         1.6  # between the facing of fit and keypoints, above which the body is turned about,
