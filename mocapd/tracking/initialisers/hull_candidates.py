@@ -84,8 +84,10 @@ def _log_odds(labels: Bytes, p: HullStartParams) -> Singles:
 def _blob(
     labels: Bytes, camera: Camera, image_scale: int, part_m: Floats, p: HullStartParams
 ) -> Blob | None:
-    """What of a camera's foreground (h,w) the voxels at part_m (P,3) cover."""
+    """What of a camera's foreground (h,w) the voxels at part_m (P,3) cover, down to the floor below them."""
     h, w = labels.shape
+    lowest_m = part_m[part_m[:, 1] < p.low_m + p.voxel_m]
+    part_m = np.concatenate([part_m, lowest_m * (1.0, 0.0, 1.0) + (0.0, 0.5 * p.low_m, 0.0)])
     at = (project(camera, part_m) + 0.5) / image_scale - 0.5
     xy = np.rint(np.nan_to_num(at, nan=-1.0)).astype(np.int64)
     is_seen = ((xy >= 0) & (xy < (w, h))).all(axis=1)

@@ -44,6 +44,8 @@ def test_somebody_is_found_where_they_stand() -> None:
     assert abs(one.middle_m[1] - 0.8) < 0.1
     for camera in range(4):
         assert share_of(one, camera, FIGURE) > 0.97
+        rows = np.flatnonzero(silhouette(CAMERAS[camera], FIGURE).any(axis=1))
+        assert one.person.blobs[camera].bottom >= rows[-1]  # the feet, too
 
 
 def test_light_on_the_floor_is_no_part_of_somebody() -> None:
