@@ -2,7 +2,7 @@
 
 A blob of one picture may hold a person, the light on the floor before and somebody behind. In space these come apart: what
 stands above a place of the floor in the hull of all foregrounds is a candidate, and each camera's blob is the part of its
-foreground that the candidate covers. The carve is the soft one of `vision/hull/soft_carve.py`, so that possible shadows count
+foreground that the candidate covers, with all below: legs in the colour of the lawn behind them are carved away. The carve is the soft one of `vision/hull/soft_carve.py`, so that possible shadows count
 little, and nothing is carved where a background is unknown.
 """
 
@@ -51,14 +51,19 @@ def hull_candidates(
     is_person = p.voxel_m * columns.sum(axis=1) >= p.least_high_m
     is_person |= columns[:, int((p.arms_m - p.low_m) / p.voxel_m) :].any(axis=1)
     n, numbered = cv2.connectedComponents(is_person.astype(np.uint8))
-    parts = [points_m[(columns & (numbered == k)[:, None]).reshape(-1)] for k in range(1, n)]
-    parts = [one for one in parts if p.least_m3 <= len(one) * p.voxel_m**3 <= p.most_m3]
+    parts = [columns & (numbered == k)[:, None] for k in range(1, n)]
+    volumes_m3 = [p.voxel_m**3 * np.count_nonzero(part) for part in parts]
+    largest = sorted(range(len(parts)), key=lambda k: -volumes_m3[k])
+    right = [k for k in largest if p.least_m3 <= volumes_m3[k] <= p.most_m3]
     out = []
-    for part_m in sorted(parts, key=len, reverse=True)[: p.people]:
+    for k in right[: p.people]:
+        part_m = points_m[parts[k].reshape(-1)]
+        above = np.maximum.accumulate(parts[k][:, ::-1], axis=1)[:, ::-1]
+        above_m = points_m[above.reshape(-1)]
         blobs = {
             i: blob
             for i, labels in foregrounds.items()
-            if (blob := _blob(labels, cameras[i], image_scales[i], part_m, p)) is not None
+            if (blob := _blob(labels, cameras[i], image_scales[i], above_m, p)) is not None
         }
         if len(blobs) > 1:
             middle_m = 0.5 * (part_m.min(axis=0) + part_m.max(axis=0))
@@ -84,7 +89,7 @@ def _log_odds(labels: Bytes, p: HullStartParams) -> Singles:
 def _blob(
     labels: Bytes, camera: Camera, image_scale: int, part_m: Floats, p: HullStartParams
 ) -> Blob | None:
-    """What of a camera's foreground (h,w) the voxels at part_m (P,3) cover, down to the floor below them."""
+    """What of a camera's foreground (h,w) the voxels at part_m (P,3) cover, down to the floor."""
     h, w = labels.shape
     lowest_m = part_m[part_m[:, 1] < p.low_m + p.voxel_m]
     part_m = np.concatenate([part_m, lowest_m * (1.0, 0.0, 1.0) + (0.0, 0.5 * p.low_m, 0.0)])
