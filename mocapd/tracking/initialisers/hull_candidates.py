@@ -1,9 +1,10 @@
 """Candidate people in the visual hull of three cameras or more.
 
 A blob of one picture may hold a person, the light on the floor before and somebody behind. In space these come apart: what
-stands above a place of the floor in the hull of all foregrounds is a candidate, and each camera's blob is the part of its
-foreground that the candidate covers, with all below: legs in the colour of the lawn behind them are carved away. The carve is the soft one of `vision/hull/soft_carve.py`, so that possible shadows count
-little, and nothing is carved where a background is unknown.
+stands above a place of the floor in the hull of all foregrounds is a candidate. Each camera's blob is the part of its
+foreground that the candidate covers, with all below: legs in the colour of the lawn behind them are carved away. The carve is
+the soft one of `vision/hull/soft_carve.py`, so that possible shadows count little, and nothing is carved where a background
+is unknown.
 """
 
 from collections.abc import Mapping, Sequence
