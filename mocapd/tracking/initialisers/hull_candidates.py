@@ -47,7 +47,8 @@ def hull_candidates(
     points_m, (nx, ny, nz) = voxel_centres(_space(seeing, p), p.voxel_m)
     maps = [_log_odds(labels, p) for labels in foregrounds.values()]
     inside = carve_log_odds(seeing, maps, points_m) > 0.0
-    columns = (inside & (views_of(seeing, points_m) >= p.cameras)).reshape(nx, ny, nz)
+    inside[inside] = views_of(seeing, points_m[inside]) >= p.cameras
+    columns = inside.reshape(nx, ny, nz)
     # light on the floor makes a flat hull, which takes in no arm held out
     is_person = p.voxel_m * columns.sum(axis=1) >= p.least_high_m
     is_person |= columns[:, int((p.arms_m - p.low_m) / p.voxel_m) :].any(axis=1)

@@ -276,10 +276,10 @@ class PersonSearch:
         return away_m <= self._params.same_place_m + self._params.walks_m_s * ago_s
 
     def _from_last(self, fit: Fit, t_ns: int) -> tuple[float, float]:
-        """Distance from where a person was tracked last [m], and how long ago [s]; 0 and inf if nobody was."""
-        if self._last is None:
+        """Distance from where a person was tracked last [m], and how long ago [s]; 0 and inf if nobody was, or later."""
+        root_m, then_ns = self._last or (fit.state.root_m, t_ns + 1)
+        if then_ns > t_ns:
             return 0.0, np.inf
-        root_m, then_ns = self._last
         return float(np.linalg.norm(fit.state.root_m - root_m)), seconds(t_ns - then_ns)
 
     def _as_person(self, fit: Fit, candidate: _SearchCandidate) -> Fit | None:

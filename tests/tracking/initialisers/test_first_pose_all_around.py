@@ -112,6 +112,8 @@ def test_who_was_tracked_a_moment_ago_is_not_taken_for_somebody_else() -> None:
     assert np.linalg.norm(found.root_m - other.root_m) < 0.1
     search.on_body(other.root_m + np.array([0.5, 0.0, 0.0]), nanoseconds(3.0))
     assert first_pose(search, other, nanoseconds(3.5)) is not None
+    search.on_body(other.root_m + np.array([2.5, 0.0, 0.0]), nanoseconds(90.0))
+    assert first_pose(search, other, nanoseconds(4.0)) is not None  # a clock that was set back
 
 
 def test_of_two_people_the_one_is_found_again_who_was_tracked() -> None:
