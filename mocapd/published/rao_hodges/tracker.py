@@ -40,9 +40,10 @@ from mocapd.tracking.tracking_state import (
     grow_uncertainty,
 )
 from mocapd.types import BodyState, Bytes, Floats, FrameSet, Rig, Tracking
-from mocapd.vision.hull.ray_hull import HullPoints, RayHullParams, hull_points, views_of
+from mocapd.vision.hull.ray_hull import HullPoints, RayHullParams, box_about, hull_points, views_of
 
 _TICK_S = 1.0 / 30.0
+_LOWEST_M = -0.05  # of the space that is looked at: a little below the floor
 _SURE_M, _BONE_M = (
     0.03,
     0.4,
@@ -77,7 +78,7 @@ class RaoHodgesTracker:
         self._stature_m = stature_m
         self._body: BodyChains = body_chains(mean_shape(stature_m))
         self._silhouettes = RigSilhouettes(rig, p)
-        self._room_m = _box(common_place(rig.cameras), p.room_m, p.height_m)
+        self._room_m = box_about(common_place(rig.cameras), p.room_m, _LOWEST_M, p.height_m)
         self._tracking = TrackingState(tracking)
         self.probe: Probe = no_probe
         self.reset()
@@ -175,7 +176,7 @@ class RaoHodgesTracker:
     def _cloud(self, middle_m: Floats, masks: Sequence[Bytes]) -> PointCloud:
         """Points of the hull about a person."""
         p = self.params
-        hull = self._hull(_box(middle_m, p.about_m, p.height_m), masks, p.hull)
+        hull = self._hull(box_about(middle_m, p.about_m, _LOWEST_M, p.height_m), masks, p.hull)
         self.probe("hull")
         if len(hull.points_m) == 0:
             return point_cloud(hull.points_m, 0.0)
@@ -216,11 +217,3 @@ class RaoHodgesTracker:
         """(E,) largest spread of each ellipsoid's own angles [rad]; 0 if it has none."""
         first = self._body.whole.arrays.first_dof
         return np.array([spread[a:b].max(initial=0.0) for a, b in pairwise(first)])
-
-
-def _box(middle_m: Floats, half_width_m: float, height_m: float) -> Floats:
-    """(2,3) corners of a box about a place, from a little below the floor to this height."""
-    half = np.array([half_width_m, 0.0, half_width_m])
-    low, high = middle_m - half, middle_m + half
-    low[1], high[1] = -0.05, height_m
-    return np.array([low, high])

@@ -18,7 +18,7 @@ from mocapd.tracking.cues.clothes.clothes_params import HullStartParams
 from mocapd.tracking.initialisers.standing_initialiser import Blob, PersonCandidate, blob_within
 from mocapd.types import Bytes, Camera, Floats, Singles
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, UNKNOWN
-from mocapd.vision.hull.ray_hull import views_of
+from mocapd.vision.hull.ray_hull import box_about, views_of
 from mocapd.vision.hull.soft_carve import carve_log_odds, voxel_centres
 
 
@@ -44,7 +44,8 @@ def hull_candidates(
     if len(foregrounds) < p.cameras:
         return None
     seeing = [cameras[i] for i in foregrounds]
-    points_m, (nx, ny, nz) = voxel_centres(_space(seeing, p), p.voxel_m)
+    space_m = box_about(common_place(seeing), p.half_width_m, p.low_m, p.high_m)
+    points_m, (nx, ny, nz) = voxel_centres(space_m, p.voxel_m)
     maps = [_log_odds(labels, p) for labels in foregrounds.values()]
     inside = carve_log_odds(seeing, maps, points_m) > 0.0
     inside[inside] = views_of(seeing, points_m[inside]) >= p.cameras
@@ -72,14 +73,6 @@ def hull_candidates(
             place_m = np.median(part_m, axis=0) * (1.0, 0.0, 1.0)
             out.append(HullCandidate(middle_m, PersonCandidate(place_m, blobs, 0.0)))
     return out
-
-
-def _space(cameras: Sequence[Camera], p: HullStartParams) -> Floats:
-    """(2,3): lower and upper corner of the space that is searched [m]."""
-    half = np.array([p.half_width_m, 0.0, p.half_width_m])
-    box = common_place(cameras) + np.stack([-half, half])
-    box[:, 1] = p.low_m, p.high_m
-    return np.asarray(box)
 
 
 def _log_odds(labels: Bytes, p: HullStartParams) -> Singles:

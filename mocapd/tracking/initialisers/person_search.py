@@ -28,7 +28,7 @@ from mocapd.tracking.initialisers.standing_initialiser import (
     views_of,
 )
 from mocapd.tracking.lost_reason import LostReason
-from mocapd.types import Camera, Floats
+from mocapd.types import Bytes, Camera, Floats
 from mocapd.vision.foreground_kernels import BACKGROUND
 
 Found = tuple[Fit, tuple[str, ...]]  # a body and the names of the cameras that show it
@@ -95,6 +95,7 @@ class PersonSearch:
         self._cameras, self._params, self._clock_ns = cameras, params.start, now_ns
         self._joints, self._least_joints = joints, params.keypoint_start.least_joints
         self._hull_params = params.hull_start
+        self._scales = [view.image_scale for view in views.each]
         self._motion = MotionMonitor(params.motion_monitor)
         self._by_keypoints = KeypointInitialiser(
             silhouettes, floor, joints, views, cameras, params.start, params.keypoint_start
@@ -108,6 +109,9 @@ class PersonSearch:
         self._by_keypoints.reset()
         self._motion.reset()
         self._last: tuple[Floats, int] | None = None
+        # of the newest pictures that were searched
+        self._clear: dict[int, Bytes] = {}
+        self._hull: list[HullCandidate] | None = None
         self.give_up()
 
     def on_body(self, root_m: Floats, t_ns: int) -> None:
@@ -118,7 +122,6 @@ class PersonSearch:
         """Cancels the search in progress."""
         self._under_way: Generator[None, None, _Likely | None] | None = None
         self._earlier: _Likely | None = None  # found in older pictures, to be refitted to the next
-        self._hull: list[HullCandidate] | None = None  # of the newest pictures that were searched
 
     def look(self, factors: Floats, information: Floats, t_ns: int) -> Found | None:
         """A person of this shape in the newest pictures, with the cameras that show it; None if none is confirmed yet or
@@ -231,25 +234,20 @@ class PersonSearch:
         views.mark_body(None)
         views.update_foreground()
         views.remove_ghosts()
-        foregrounds = {i: views.each[i].foreground for i in self._clear_cameras()}
-        scales = [view.image_scale for view in views.each]
-        self._hull = hull_candidates(foregrounds, self._cameras, scales, self._hull_params)
+        self._clear = {i: views.each[i].foreground for i in self._clear_cameras()}
+        self._hull = hull_candidates(self._clear, self._cameras, self._scales, self._hull_params)
 
     def _standing_candidates(self, shadows: bool) -> list[_SearchCandidate]:
         """The likeliest upright people in the foreground. shadows: include possible shadows, which the hull always does."""
-        p, views = self._params, self._views
+        p = self._params
         if self._hull is not None:
             people = [] if shadows else [one.person for one in self._hull]
         else:
-            blobs = {
-                i: blobs_of(views.each[i].foreground, shadows, p) for i in self._clear_cameras()
-            }
-            scales = [view.image_scale for view in views.each]
+            blobs = {i: blobs_of(before, shadows, p) for i, before in self._clear.items()}
             stature_m = self._silhouettes.model.stature_m
-            people = person_candidates(blobs, self._cameras, scales, stature_m, p)[: p.people]
-        return [
-            _SearchCandidate(person, shadows, views_of(person, views.present)) for person in people
-        ]
+            people = person_candidates(blobs, self._cameras, self._scales, stature_m, p)[: p.people]
+        present = self._views.present
+        return [_SearchCandidate(person, shadows, views_of(person, present)) for person in people]
 
     def _clear_cameras(self) -> list[int]:
         """Cameras without those whose picture hardly shows its background (changed light, or a person close to the lens):

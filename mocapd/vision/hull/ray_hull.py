@@ -115,6 +115,14 @@ def hull_points(
     return points_on(ray_hull(cameras, silhouettes, box_m, p), p.points)
 
 
+def box_about(middle_m: Floats, half_width_m: float, low_m: float, high_m: float) -> Floats:
+    """(2,3) lower and upper corner of the space about a place, between two heights [m, world]."""
+    half = np.array([half_width_m, 0.0, half_width_m])
+    box = middle_m + np.stack([-half, half])
+    box[:, 1] = low_m, high_m
+    return np.asarray(box)
+
+
 def views_of(cameras: Sequence[Camera], points_m: Floats) -> Ints:
     """(P,) how many cameras have points (P,3) [m, world] in view."""
     count = np.zeros(len(points_m), np.int64)

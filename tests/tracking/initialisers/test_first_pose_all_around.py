@@ -35,7 +35,7 @@ def facing_rad(joints_m: Floats) -> float:
 
 
 class Keypoints:
-    """Stands in for the detectors and their term: sharp keypoints of a body that faces this way, or none of both hips."""
+    """Stands in for the detectors and their term: sharp keypoints of a body that faces this way."""
 
     is_measured = False
     rays = ()  # for a pose from them alone there are too few
@@ -60,12 +60,10 @@ class Keypoints:
         return 0.0
 
 
-def search_among(
-    people: Sequence[MotionState], fitter: Fitter, keypoints: Keypoints
-) -> PersonSearch:
+def search_among(people: Sequence[MotionState], keypoints: Keypoints) -> PersonSearch:
     """Before cameras all around."""
     views = []
-    for drawing in fitter.drawings:
+    for drawing in FITTER.drawings:
         foreground = np.zeros((240, 320), np.uint8)
         for state in people:
             roi = drawing.region(state, 0.0, 10)
@@ -82,7 +80,7 @@ def search_among(
     )  # fmt: skip
     detectors: Any = keypoints
     return PersonSearch(
-        fitter, FloorTerm(BODY), detectors, shown, CAMERAS, ClothesParams(), lambda: 0
+        FITTER, FloorTerm(BODY), detectors, shown, CAMERAS, ClothesParams(), lambda: 0
     )
 
 
@@ -95,7 +93,7 @@ def first_pose(search: PersonSearch, state: MotionState, t_ns: int = 0) -> Motio
 def test_the_first_pose_faces_as_keypoints_do(yaw_rad: float) -> None:
     state = turned(yaw_rad)
     for seen in (yaw_rad, yaw_rad + np.pi):  # whichever way the outlines led
-        found = first_pose(search_among([state], FITTER, Keypoints(seen)), state)
+        found = first_pose(search_among([state], Keypoints(seen)), state)
         assert found is not None
         off_rad = np.angle(np.exp(1j * (facing_rad(FITTER.joints(found)[0]) - seen)))
         assert abs(off_rad) < 1.2
@@ -104,7 +102,7 @@ def test_the_first_pose_faces_as_keypoints_do(yaw_rad: float) -> None:
 def test_who_was_tracked_a_moment_ago_is_not_taken_for_somebody_else() -> None:
     """The one who was tracked has left the cameras' view."""
     other = turned(0.7)
-    search = search_among([other], FITTER, Keypoints(0.7))
+    search = search_among([other], Keypoints(0.7))
     search.on_body(other.root_m + np.array([2.5, 0.0, 0.0]), 0)
     assert first_pose(search, other, nanoseconds(1.0)) is None
     found = first_pose(search, other, nanoseconds(2.0))  # by then they may have walked here
@@ -121,7 +119,7 @@ def test_of_two_people_the_one_is_found_again_who_was_tracked() -> None:
     one = turned(0.7)
     other = replace(one, root_m=one.root_m + np.array([-1.3, 0.0, 0.4]))
     for tracked in (one, other):
-        search = search_among([one, other], FITTER, Keypoints(0.7))
+        search = search_among([one, other], Keypoints(0.7))
         search.on_body(tracked.root_m + np.array([0.2, 0.0, -0.1]), 0)
         # a fit that agrees less well counts when it is found once more
         tries = (first_pose(search, one, nanoseconds(t_s)) for t_s in (1.5, 1.8))
