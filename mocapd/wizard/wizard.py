@@ -84,7 +84,6 @@ class Wizard:
     def stop(self, timeout_s: float = 1.0) -> bool:
         """End; False when the thread or its job is still busy after `timeout_s` [s]."""
         self._stopping.set()
-        self._job.close()
         if self._thread.ident is not None:
             self._thread.join(timeout_s)
         return not self._thread.is_alive()
@@ -156,6 +155,8 @@ class Wizard:
         except BaseException as error:
             self._died(error)
             raise
+        finally:
+            self._job.close()  # here, as a last tick may start one
 
     def _look_after_job(self) -> None:
         try:

@@ -349,6 +349,21 @@ def test_the_end_is_told(tmp_path: Path) -> None:
     assert run.wizard.view().ended
 
 
+def test_a_job_may_begin_while_the_setup_ends(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    ticks, is_ending = threading.Event(), threading.Event()
+
+    def tick(step: ScriptedStep, now_ns: int) -> None:
+        ticks.set()
+        assert is_ending.wait(WAIT_S)
+        if step.context.job is None:
+            step.context.start_job(lambda tell: None, lambda result: None)
+
+    monkeypatch.setattr(ScriptedStep, "tick", tick)
+    assert ticks.wait(WAIT_S)
+    assert not run.wizard.stop(0.0)
+    is_ending.set()  # the fixture sees that nothing died
+
+
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_an_unexpected_end_is_heard_of(tmp_path: Path) -> None:
     def breaks(tell: Tell) -> None:
