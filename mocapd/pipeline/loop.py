@@ -18,11 +18,12 @@ from mocapd.pipeline.slowness import SlownessWatch
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.tracking.base import EffortTracker, LearningTracker, Track, Tracker
 from mocapd.tracking.view_disagreement import lower_confidence
-from mocapd.types import FrameSet
+from mocapd.types import BodyState, FrameSet, Tracking
 
 OnDeath = Callable[[BaseException], None]
 
 LOOK_UP_S = 0.5  # interval of checks for `stop` without frames [s]
+SETTLE_S = 2.0  # of a track, before its load counts: a search and the first fits take longer than what follows [s]
 
 
 class PipelineLoop:
@@ -59,6 +60,7 @@ class PipelineLoop:
         self._began_ns: int | None = None  # start of the current step, or of learning from it
         self._recorder = MetricsRecorder()
         self._effort = EffortControl()
+        self._tracked_since_ns: int | None = None
         self._slowness, self._others = SlownessWatch(), OtherPrograms()
         # A daemon thread: a kernel that hangs must not keep the process from ending.
         self._thread = threading.Thread(target=self._run, name="pipeline", daemon=True)
@@ -133,14 +135,18 @@ class PipelineLoop:
         busy_ns = now_ns - start_ns
         others = self._others.share(now_ns)
         self._recorder.set_slowness(self._slowness.update(number, busy_ns, now_ns, others))
-        self._spare(frames, number, busy_ns, now_ns)
+        self._spare(body, number, busy_ns, now_ns)
 
-    def _spare(self, frames: FrameSet, number: int, busy_ns: int, now_ns: int) -> None:
-        """Choose the effort for the next frame set, after the number-th took busy_ns."""
+    def _spare(self, body: BodyState, number: int, busy_ns: int, now_ns: int) -> None:
+        """Choose the effort for the next frame set, after the number-th gave this body and took busy_ns."""
         if not isinstance(self._tracker, EffortTracker):
             return
+        if body.tracking is Tracking.LOST or self._tracked_since_ns is None:
+            self._tracked_since_ns = None if body.tracking is Tracking.LOST else body.t_ns
+        if self._tracked_since_ns is None or seconds(body.t_ns - self._tracked_since_ns) < SETTLE_S:
+            return
         before = self._effort.effort
-        now = self._effort.update(frames.t_ns, number, busy_ns, now_ns)
+        now = self._effort.update(body.t_ns, number, busy_ns, now_ns)
         if now is not before:
             self._tracker.set_effort(now)
             self._recorder.effort_changed(now)

@@ -237,6 +237,27 @@ def test_a_tracker_that_is_too_slow_is_stepped_with_less_effort_which_metrics_te
     assert run.loop.metrics().effort is tracker.effort is Effort.SAVING
 
 
+def test_a_search_that_takes_long_lowers_no_effort(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Searching(SlowTracker):
+        def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+            super().step(frames, shape)
+            return Track(lost_body(frames.t_ns, self.name), shape)
+
+    monkeypatch.setattr("mocapd.pipeline.loop.SETTLE_S", 0.0)
+    tracker = Searching()
+    run = Run(tracker)
+    tracker.sets = lambda: run.collector.sets
+    run.loop.start()
+    until_s = time.monotonic() + 2.0  # with a body it falls after less
+    while time.monotonic() < until_s:
+        run.feed()
+        time.sleep(0.002)
+    assert run.out
+    assert not tracker.lowered.is_set()
+    tracker.effort = Effort.LEAST  # lets the last step end
+    assert run.loop.stop(20.0)
+
+
 def test_metrics_tell_that_most_frame_sets_are_skipped() -> None:
     tracker = WaitingTracker()
     run = Run(tracker)
