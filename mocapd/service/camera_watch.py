@@ -25,6 +25,7 @@ from mocapd.types import Bytes, Frame, Rig
 
 _log = logging.getLogger(__name__)
 
+_WAIT_S = 0.04  # for an idle moment of the pipeline, at most: one comes after each frame set if the machine is fast enough
 _SAVE_NS = 600 * NS_PER_S  # interval of saving the rooms of identical webcams for the next start
 
 
@@ -56,7 +57,7 @@ class CameraWatch:
             )
         earlier = rooms.read(self._cameras) if rooms is not None and groups else {}
         earlier = {name: earlier[name] for group in groups for name in group if earlier.get(name)}
-        self._onwards, self._rooms = onwards, rooms
+        self._onwards, self._rooms, self._idle = onwards, rooms, idle
         self._saved_ns: int | None = None
         self._memories = {
             name: LandmarkMemory(camera, earlier.get(name, ()))
@@ -129,8 +130,8 @@ class CameraWatch:
         return self._views.off_m
 
     def look(self) -> None:
-        """Runs the checks; call it about once a second. Takes some milliseconds per camera, and in the first minute a fifth
-        of a second per pair of cameras."""
+        """Runs the checks; call it about once a second. Takes some milliseconds per camera, in idle moments of the pipeline,
+        and in the first minute a fifth of a second per pair of cameras."""
         self._take_comparison()
         newest: dict[str, Frame] = {}
         for name, camera in self._cameras.items():
@@ -146,11 +147,16 @@ class CameraWatch:
             if trust is not Trust.KNOWN:
                 self._identify(name, frame, losses)
             elif name not in self._misplaced:
+                self._wait_for_idle()
                 self._watch_mounting(name, frame)
         self._swapped.compare_points(newest)
         self._forget_misplaced()
         self._warn_of_swapped()
         self._save_rooms(max((frame.t_ns for frame in newest.values()), default=0))
+
+    def _wait_for_idle(self) -> None:
+        if self._idle is not None:
+            self._idle.wait(_WAIT_S)
 
     def _newest_of(self, camera: str) -> Frame | None:
         with self._lock:

@@ -99,6 +99,7 @@ class BodyTracker:
         self._tracking.reset(None if body is None else body.t_ns)
         self._state: TrackState | None = None
         self._unlearned: tuple[CueEstimates, dict[int, float]] | None = None
+        self._t_ns = 0  # of the newest frame set
         self._shirt_trust, self._clothes_trust = CueTrust(), CueTrust()
         self._track_start_ns, self._ticks = 0, TickClock()
 
@@ -124,6 +125,7 @@ class BodyTracker:
         """See Tracker. Raises ConfigError when a frame's size is not its calibration's."""
         require_stature(shape, self._stature_m)
         self.learn()
+        self._t_ns = frames.t_ns
         self._ticks.pass_to(frames.t_ns)
         present = self._load(frames)
         self.probe("picture")
@@ -161,7 +163,8 @@ class BodyTracker:
         return track
 
     def learn(self) -> None:
-        """See LearningTracker. Updates each cue's background, light and colours from its estimate."""
+        """See LearningTracker. Detects keypoints for the next frame set, and updates each cue's background, light and colours
+        from its estimate."""
         if self._unlearned is None:
             return
         (estimates, present), self._unlearned = self._unlearned, None
@@ -169,6 +172,9 @@ class BodyTracker:
         if self._shirt is not None:
             self._shirt.learn(estimates.shirt, present, state is None)
         if clothes is not None:
+            if state is not None and state.by_shirt and state.t_ns == self._t_ns:
+                clothes.detect_keypoints(state.motion, state.t_ns, state.legs_since_ns)
+                self.probe("keypoints")
             clothes.learn(estimates.clothes, state is None, state is not None and state.by_shirt)
         self.probe("learn")
 

@@ -278,7 +278,8 @@ class PoseFilter:
 def _lag_s(gap_s: float, follows: Floats, learned: Floats, keep: Floats, trust: Floats) -> float:
     """See the module; follows, learned, retained (J,): f, l and g of each bone."""
     lags_s = gap_s * (1.0 / follows - 1.0) * (1.0 - keep) / (1.0 - keep + keep * learned)
-    return float(np.average(lags_s, weights=trust + 1e-6))
+    weights = trust + 1e-6
+    return float(lags_s @ weights / weights.sum())
 
 
 def _correction_between(

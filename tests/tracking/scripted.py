@@ -231,6 +231,9 @@ class ScriptedClothes(_Scripted):
     def lost_reason(self, _: int) -> LostReason | None:
         return self._lost_reason
 
+    def detect_keypoints(self, *_: object) -> None:
+        pass
+
     def learn(self, *_: object) -> None:
         pass
 

@@ -21,6 +21,10 @@ class PersonCrop:
         x, y = self.corner_px
         return np.array([[self.scale, 0.0, x], [0.0, self.scale, y]])
 
+    def moved(self, way_px: Floats) -> "PersonCrop":
+        """About somebody who has moved by way_px (2,) in the picture since."""
+        return PersonCrop(self.scale, self.corner_px - self.scale * way_px)
+
 
 def middle_of(hips_m: Floats, neck_m: Floats) -> Floats:
     """The point of a body (3,) that is in the middle of its crop."""

@@ -1,7 +1,7 @@
 """Any clothes as a cue: the learned colours of body regions before a learned background place the whole body, or legs and
 head below a trunk that the shirt carries."""
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +20,7 @@ from mocapd.tracking.cues.clothes.clothes_solver import (
     ClothesSolver,
 )
 from mocapd.tracking.cues.clothes.leg_schedule import LegSchedule
+from mocapd.tracking.cues.keypoints.delayed_keypoints import DelayedKeypoints
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.tracking.lost_reason import LostReason
@@ -51,6 +52,7 @@ class ClothesCue:
         self.params = p = params if params is not None else ClothesParams()
         self._solver = solver = ClothesSolver(rig, stature_m, p, each)
         self.cameras, self.model = solver.cameras, solver.model
+        self._delayed = DelayedKeypoints(solver.terms.joints)
         self._search = PersonSearch(
             solver.silhouettes, solver.terms.floor, solver.terms.joints, solver.cameras, rig.cameras, p, now_ns,
         )  # fmt: skip
@@ -74,6 +76,7 @@ class ClothesCue:
         """Forget background and look."""
         self._solver.reset()
         self._search.reset()
+        self._delayed.reset()
         self._ticks, self._legs, self.legs_rest = Ticks(1, 1, 1), LegSchedule(), False
 
     def rehearse(self) -> None:
@@ -107,40 +110,55 @@ class ClothesCue:
         """Classifies the pictures about the predicted body; None without a background or an appearance model, and while the
         legs rest, see `legs_rest`.
 
-        shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then detected less often, by half of the
-        cameras at once, and not for new legs that silhouettes found.
+        shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then of the frame set before, detected
+        less often, by half of the cameras at once, and not for new legs that silhouettes found.
         """
         self.legs_rest = False
         if self.cameras.are_new or not self.cameras.has_appearance:
             return None
-        is_new = legs_since_ns is None or t_ns - legs_since_ns <= nanoseconds(
-            self.params.guided_joint_after_s
-        )
         if (
             shirt_carries
-            and not is_new
+            and not self._are_new(t_ns, legs_since_ns)
             and self._legs.rests(self._ticks.last, self._solver.work.legs)
         ):
             self.legs_rest = True
             return None
-        joints, detecting = self._solver.terms.joints, self._detecting(shirt_carries, is_new)
-        detect = joints.detector(self.fitter, predicted, self.cameras, detecting)
+        joints = self._solver.terms.joints
+        if shirt_carries:
+            detect = self._delayed.take(self.fitter, predicted, t_ns, self.cameras)
+        else:
+            is_due = self._ticks.alternates(2 * self._solver.work.network, _JOINTS)
+            detecting = self.cameras.present if is_due else ()
+            detect = joints.detector(self.fitter, predicted, self.cameras, detecting)
         rays: list[JointRays | None]
         views, rays = self.cameras.prepare(
             predicted, self._solver.searches_everywhere(self._ticks), detect
         )
         return ClothesObservation(predicted, views, joints.term(self.model, rays))
 
-    def _detecting(self, shirt_carries: bool, is_new: bool) -> Collection[int]:
-        """The cameras whose keypoints are detected in this frame set; is_new: the legs were found a moment ago."""
-        present, every = self.cameras.present, self._solver.work.network
-        if not shirt_carries:
-            return present if self._ticks.alternates(2 * every, _JOINTS) else ()
+    def detect_keypoints(self, body: MotionState, t_ns: int, legs_since_ns: int | None) -> None:
+        """Detects keypoints about a body that the shirt carries in this frame set, at t_ns, for the next fit of its legs."""
+        if self.cameras.are_new or not self.cameras.has_appearance:
+            return
+        cameras = self._detecting(self._are_new(t_ns, legs_since_ns))
+        if cameras:
+            self._delayed.detect(self.fitter, body, t_ns, self.cameras, cameras)
+
+    def _detecting(self, is_new: bool) -> Sequence[int]:
+        """The cameras whose keypoints are detected now below the shirt; is_new: the legs were found a moment ago."""
+        present, work = self.cameras.present, self._solver.work
         if is_new and not self._solver.first_legs.by_keypoints:
             return ()
+        if not is_new and self._legs.rests(self._ticks.last + 1, work.legs):
+            return ()
         most = len(present) if is_new else (len(present) + 1) // 2
-        every_s = self.params.guided_joints_s * every
+        every_s = self.params.guided_joints_s * work.network
         return self._legs.keypoints.take(present, self._ticks.last, every_s, most)
+
+    def _are_new(self, t_ns: int, legs_since_ns: int | None) -> bool:
+        """True if the legs were found a moment ago."""
+        lasts_ns = nanoseconds(self.params.guided_joint_after_s)
+        return legs_since_ns is None or t_ns - legs_since_ns <= lasts_ns
 
     def fit_whole_body(
         self,

@@ -1,6 +1,7 @@
 """Keypoint detection: runs the heatmap network of each camera on a crop about the predicted body."""
 
 from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -32,6 +33,15 @@ _CELL_PX = INPUT_PX / CELLS
 _GREY = (127.5, 127.5, 127.5)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraKeypoints:
+    """One camera's detection: its rays, and log-odds (96,96) of the person in a crop of the picture."""
+
+    rays: JointRays
+    odds: Singles
+    crop: PersonCrop
+
+
 def no_detection(_camera: int) -> JointRays | None:
     """Detects nothing, for frame sets without keypoint detection."""
     return None
@@ -54,7 +64,7 @@ class KeypointDetectors:
         detecting: Collection[int] | None = None,
     ) -> Callable[[int], JointRays | None]:
         """Returns a function that detects the keypoints of the predicted body in the camera of an index, if that is among
-        `detecting` (None: all are)."""
+        `detecting` (None: all are), and marks the person in its picture."""
         detecting = cameras.present if detecting is None else detecting
         if not self._networks or not detecting:
             return no_detection
@@ -63,21 +73,33 @@ class KeypointDetectors:
         def detect(i: int) -> JointRays | None:
             if i not in detecting:
                 return None
-            late_s, there_m = cameras.present[i], here_m
-            if late_s:
-                there_m, _ = fitter.joints(predict_state(fitter.model, predicted, late_s))
-            return self._rays(fitter, i, cameras.each[i], here_m, there_m)
+            found = self.detect(fitter, predicted, here_m, cameras, i)
+            if found is None:
+                return None
+            cameras.each[i].mark_person(found.odds, found.crop)
+            return found.rays
 
         return detect
+
+    def detect(
+        self, fitter: Fitter, body: MotionState, joints_m: Floats, cameras: CameraViews, index: int
+    ) -> CameraKeypoints | None:
+        """Detects the keypoints of a body with joints at joints_m (J,3) in one picture; None too near to the camera."""
+        if not self._networks:
+            return None
+        late_s, there_m = cameras.present[index], joints_m
+        if late_s:
+            there_m, _ = fitter.joints(predict_state(fitter.model, body, late_s))
+        return self._detect(fitter, index, cameras.each[index], joints_m, there_m)
 
     def term(self, model: BodyModel, rays: Iterable[JointRays | None]) -> tuple[JointTerm, ...]:
         """The detections as a term of the fit; empty without detections."""
         found = [camera_rays for camera_rays in rays if camera_rays is not None]
         return (JointTerm(model, found, self._params.term),) if found else ()
 
-    def _rays(
+    def _detect(
         self, fitter: Fitter, index: int, view: CameraView, here_m: Floats, there_m: Floats
-    ) -> JointRays | None:
+    ) -> CameraKeypoints | None:
         """here_m (J,3): the joints at the frame set's instant, there_m (J,3) at the camera's own."""
         p, size, drawing = self._params, self._relative_size, fitter.drawings[index]
         camera, k = drawing.camera, drawing.image_scale
@@ -87,7 +109,6 @@ class KeypointDetectors:
             return None
         crop = crop_about(camera, middle, SIDE_M * size, INPUT_PX, k)
         heatmaps = self._networks[index].detect(*_cut_out(view, crop))
-        view.mark_person(heatmaps.mask_odds, crop)
         crop_px = heatmaps.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
         frame_px = ((crop_px - crop.corner_px) / crop.scale + 0.5) * k - 0.5
         distorted = (frame_px - camera.K[:2, 2]) / camera.K[[0, 1], [0, 1]]
@@ -102,10 +123,11 @@ class KeypointDetectors:
         cell_m = SIDE_M * size / CELLS
         information = _inverse(heatmaps.spread_cells2, p) / cell_m**2
         sd_m = np.maximum(p.laplace * heatmaps.scale_m * size, p.least_depth_m)
-        return JointRays(
+        rays = JointRays(
             camera, _JOINTS[inside], xy[inside], information[inside],
             size * heatmaps.farther_m[inside], (1.0 / sd_m**2)[inside],
         )  # fmt: skip
+        return CameraKeypoints(rays, heatmaps.mask_odds, crop)
 
 
 def _cut_out(view: CameraView, crop: PersonCrop) -> tuple[Bytes, Singles, Bytes]:

@@ -1,0 +1,113 @@
+"""Keypoints below a trunk that the shirt carries: detected after the body is published, about that body, and used in the next
+frame set.
+
+The network takes a third of a frame set's time, which nobody who waits for the body need wait for. A keypoint is moved as
+its joint is predicted to move until then, so what it says is by how far the fit before was off; the person's mask is moved
+as the body's middle. Without the shirt keypoints a frame set old are worse; docs/decisions/one-body.md has figures.
+"""
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mocapd.body.skeleton import INDEX
+from mocapd.clock import nanoseconds
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.joint_term import JointRays
+from mocapd.geometry.camera_model import to_camera
+from mocapd.tracking.cues.clothes.camera_views import CameraViews
+from mocapd.tracking.cues.keypoints.keypoint_detection import (
+    CameraKeypoints,
+    KeypointDetectors,
+    no_detection,
+)
+from mocapd.types import Floats
+from mocapd.vision.heatmaps.person_crop import PersonCrop, middle_of
+
+_LAST_S = 0.15  # older keypoints say nothing of where a limb is
+_NEAREST_M = 0.2  # of a joint that moves in a picture
+_HIPS, _NECK = INDEX["hips"], INDEX["neck"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Detection:
+    """At t_ns, about a body with joints at joints_m (J,3), by camera."""
+
+    t_ns: int
+    joints_m: Floats
+    found: dict[int, CameraKeypoints]
+
+
+class DelayedKeypoints:
+    """Keeps the newest detection until a frame set uses it."""
+
+    def __init__(self, detectors: KeypointDetectors) -> None:
+        self._detectors = detectors
+        self.reset()
+
+    def reset(self) -> None:
+        """Forgets it."""
+        self._newest: _Detection | None = None
+
+    def detect(
+        self,
+        fitter: Fitter,
+        body: MotionState,
+        t_ns: int,
+        cameras: CameraViews,
+        detecting: Collection[int],
+    ) -> None:
+        """Detects a body's keypoints in the pictures of t_ns, of these cameras."""
+        joints_m, _ = fitter.joints(body)
+        each = fitter.each(
+            lambda i: self._detectors.detect(fitter, body, joints_m, cameras, i), detecting
+        )
+        found = {i: one for i, one in zip(detecting, each, strict=True) if one is not None}
+        self._newest = _Detection(t_ns, joints_m, found)
+
+    def take(
+        self, fitter: Fitter, predicted: MotionState, t_ns: int, cameras: CameraViews
+    ) -> Callable[[int], JointRays | None]:
+        """A function that gives the keypoints of the camera of an index, moved on to the predicted body at t_ns, and marks
+        the person in its picture. Each detection is used once."""
+        newest, self._newest = self._newest, None
+        if newest is None or t_ns - newest.t_ns > nanoseconds(_LAST_S):
+            return no_detection
+        joints_m, _ = fitter.joints(predicted)
+
+        def move(i: int) -> JointRays | None:
+            found = newest.found.get(i)
+            if found is None or i not in cameras.present:
+                return None
+            smaller = fitter.drawings[i].image_scale
+            crop = _moved_crop(found, newest.joints_m, joints_m, smaller)
+            cameras.each[i].mark_person(found.odds, crop)
+            return _moved_rays(found.rays, newest.joints_m, joints_m)
+
+        return move
+
+
+def _moved_rays(rays: JointRays, from_m: Floats, to_m: Floats) -> JointRays:
+    """As their joints go, from_m (J,3) to to_m (J,3)."""
+    before, now = to_camera(rays.camera, from_m), to_camera(rays.camera, to_m)
+    deeper_m = (now[:, 2] - now[_HIPS, 2]) - (before[:, 2] - before[_HIPS, 2])
+    is_before = np.minimum(before[:, 2], now[:, 2]) > _NEAREST_M
+    z, z_now = (np.where(is_before, one[:, 2], 1.0)[:, None] for one in (before, now))
+    way = np.where(is_before[:, None], now[:, :2] / z_now - before[:, :2] / z, 0.0)
+    j = rays.joints
+    return replace(rays, xy=rays.xy + way[j], farther_m=rays.farther_m + deeper_m[j])
+
+
+def _moved_crop(found: CameraKeypoints, from_m: Floats, to_m: Floats, smaller: float) -> PersonCrop:
+    """As the body's middle goes, in a picture that is `smaller` times smaller than the camera's."""
+    camera = found.rays.camera
+    focal = camera.K[[0, 1], [0, 1]] / smaller
+    before, now = (
+        to_camera(camera, middle_of(joints_m[_HIPS], joints_m[_NECK]))
+        for joints_m in (from_m, to_m)
+    )
+    if min(before[2], now[2]) < _NEAREST_M:
+        return found.crop
+    return found.crop.moved(focal * (now[:2] / now[2] - before[:2] / before[2]))
