@@ -38,7 +38,9 @@ class KeypointPoses:
             crossing = not fitter.has_small_baseline(now.fit.state, now.views)
             is_reversed = crossing and abs(turn_rad) > p.reversed_rad
             self._reversed_looks = self._reversed_looks + 1 if is_reversed else 0
-            now = best_keypoint_pose(now, at, joints, p, self._reversed_looks >= p.reversed_looks)
+            now = best_keypoint_pose(
+                now, at, joints, p, self._reversed_looks >= p.reversed_looks, crossing
+            )
         return now
 
 
@@ -48,13 +50,14 @@ def best_keypoint_pose(
     joints: JointTerm,
     params: KeypointPoseParams,
     is_reversed: bool = False,
+    each_alone: bool = False,
 ) -> ScoredFit:
     """The cheapest of the present fit and those that start at the keypoints. is_reversed: these alone say that the body faces
-    the other way."""
+    the other way; each_alone: see `keypoint_starts`, not where views hide the depth of a limb."""
     fitter = at.solvers.fitter
     held = [one for one in now.terms if not one.is_measured and one is not joints]
     starts = keypoint_starts(
-        fitter, now.fit, joints, held, params, legs_alone=at.trunk_prior is not None
+        fitter, now.fit, joints, held, params, at.trunk_prior is not None, each_alone
     )
     return best_start(
         now, at, starts, params.fit_iterations, params.gain, params.farther, None if is_reversed else joints

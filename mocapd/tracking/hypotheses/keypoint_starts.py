@@ -42,9 +42,13 @@ def keypoint_starts(
     held: Sequence[Term],
     params: KeypointPoseParams,
     legs_alone: bool = False,
+    each_alone: bool = False,
 ) -> list[tuple[MotionState, tuple[str, ...]]]:
     """Start poses with the parts that change: with the limbs that are far from their keypoints, and with the whole body.
-    held: further terms of the keypoint fit; legs_alone: the rest of the body is fixed."""
+
+    held: further terms of the keypoint fit; legs_alone: the rest of the body is fixed; each_alone: also with each of these
+    limbs alone, as another may have been seen where it is not.
+    """
     p, joints_m = params, fitter.joints(fit.state)[0]
     costs = keypoints.costs(joints_m)
     far = {
@@ -70,12 +74,15 @@ def keypoint_starts(
         if cost - costs_there[[LIMBS[name].lower, LIMBS[name].end]].sum() > p.limb_cost
     )
     starts: list[tuple[MotionState, tuple[str, ...]]] = []
-    if limbs:
+    choices = [limbs] if limbs else []
+    if each_alone and len(limbs) > 1:
+        choices += [(name,) for name in limbs]
+    for chosen in choices:
         local = fit.state.local_xyzw.copy()
-        for name in limbs:
+        for name in chosen:
             bones = [INDEX[bone] for bone in fitter.model.space.parts[name].groups]
             local[bones] = there.local_xyzw[bones]
-        starts.append((replace(fit.state, local_xyzw=local), limbs))
+        starts.append((replace(fit.state, local_xyzw=local), chosen))
     if whole and costs.sum() - costs_there.sum() > p.whole_cost:
         starts.append((there, (WHOLE,)))
     return starts

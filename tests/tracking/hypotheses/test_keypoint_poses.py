@@ -103,6 +103,20 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
         assert off_m > 0.5
 
 
+def test_a_limb_goes_where_it_was_seen_though_another_was_seen_where_it_is_not() -> None:
+    here = with_arm(standing(0.0, 0.1), -1.3)
+    true = with_arm(here, 0.7)
+    joints = seen_at(FITTER.joints(kicking(true, "right"))[0])
+    fit = FITTER.fit(here, drawn(true), DT_S, 2)
+    now = ScoredFit(fit, drawn(true), (joints,))
+    evidence = PoseEvidence(lambda _: drawn(true), lambda _, __: (joints,))
+    found = KeypointPoses(PARAMS).test(now, situation(joints, evidence))
+    assert found.changed == ("left_arm",)
+    off_m = np.linalg.norm(FITTER.joints(found.fit.state)[0] - FITTER.joints(true)[0], axis=1)
+    assert off_m[HAND] < 0.15
+    assert off_m[INDEX["rightFoot"]] < 0.25
+
+
 def test_where_limbs_are_as_they_were_seen_nothing_is_tried() -> None:
     here = standing(0.0, 0.1)
     fit = FITTER.fit(here, drawn(here), DT_S, 1)
