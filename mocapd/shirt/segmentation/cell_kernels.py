@@ -142,7 +142,8 @@ def classify(
 
     distance (h4,w4,10): of `colour_distances`. affine (10,3,4): whitened distance of colour k is
     |A (b,g,r,1)|; skin (3,4): of bare skin, which is none of them. pixel_weight: how firmly an unclassified
-    pixel denies the shirt, 255 where background is seen, and out of reach of every colour.
+    pixel denies the shirt, 255 where background is seen, and out of reach of every colour. What looks like the shirt and
+    like its background may be either: it is unclassified, and denies the shirt softly.
     """
     mean, age, shirt_count, other_count = learned
     h, w = ids.shape
@@ -233,4 +234,7 @@ def classify(
                         bare = np.sqrt(p * p + q * q + s * s)
                         if cost >= limit[n] or bare + barer < best[n]:
                             k = 0
+                        elif limit[n] < top:  # its background looks like that, too
+                            k = 0
+                            pixel_weight[y, x] = soft
                     ids[y, x] = k
