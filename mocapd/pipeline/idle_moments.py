@@ -2,6 +2,8 @@
 
 import threading
 
+LONGEST_S = 0.04  # one comes after each frame set, if the machine is fast enough
+
 
 class IdleMoments:
     """The pipeline's thread calls `begin`, other threads wait for it."""
@@ -14,7 +16,7 @@ class IdleMoments:
         with self._begun:
             self._begun.notify_all()
 
-    def wait(self, timeout_s: float) -> None:
+    def wait(self, timeout_s: float = LONGEST_S) -> None:
         """Returns when such a moment begins, or after so long: a pipeline that is always busy has none."""
         with self._begun:
             self._begun.wait(timeout_s)

@@ -141,9 +141,12 @@ class PipelineLoop:
         """Choose the effort for the next frame set, after the number-th gave this body and took busy_ns."""
         if not isinstance(self._tracker, EffortTracker):
             return
-        if body.tracking is Tracking.LOST or self._tracked_since_ns is None:
-            self._tracked_since_ns = None if body.tracking is Tracking.LOST else body.t_ns
-        if self._tracked_since_ns is None or seconds(body.t_ns - self._tracked_since_ns) < SETTLE_S:
+        if body.tracking is Tracking.LOST:
+            self._tracked_since_ns = None
+            return
+        if self._tracked_since_ns is None:
+            self._tracked_since_ns = body.t_ns
+        if seconds(body.t_ns - self._tracked_since_ns) < SETTLE_S:
             return
         before = self._effort.effort
         now = self._effort.update(body.t_ns, number, busy_ns, now_ns)

@@ -25,7 +25,6 @@ from mocapd.types import Bytes, Frame, Rig
 
 _log = logging.getLogger(__name__)
 
-_WAIT_S = 0.04  # for an idle moment of the pipeline, at most: one comes after each frame set if the machine is fast enough
 _SAVE_NS = 600 * NS_PER_S  # interval of saving the rooms of identical webcams for the next start
 
 
@@ -156,7 +155,7 @@ class CameraWatch:
 
     def _wait_for_idle(self) -> None:
         if self._idle is not None:
-            self._idle.wait(_WAIT_S)
+            self._idle.wait()
 
     def _newest_of(self, camera: str) -> Frame | None:
         with self._lock:

@@ -23,7 +23,6 @@ _REST_S, _REST_WARNED_S = 900.0, 120.0  # from one comparison to the next
 _MOST_WAITING = 400  # small pictures: the thread is behind
 _PAUSE_S = 0.25
 _NICE = 15
-_BREATH_S = 0.04  # between two looks of the network, while the pipeline has no idle moment
 _SPEED_M_S = 0.5  # of joints, as people move
 
 
@@ -93,7 +92,7 @@ class ViewWatch:
 
     def _breathe(self) -> None:
         if self._idle is not None and not self._stopping.is_set():
-            self._idle.wait(_BREATH_S)
+            self._idle.wait()
 
     def _compare(self) -> CheckResult | None:
         """Collects for half a minute and compares; None after `stop`."""

@@ -98,8 +98,8 @@ class BodyTracker:
         body = self._handed_over.body
         self._tracking.reset(None if body is None else body.t_ns)
         self._state: TrackState | None = None
-        self._unlearned: tuple[CueEstimates, dict[int, float]] | None = None
-        self._t_ns = 0  # of the newest frame set
+        # estimates, present cameras, and whether the body was observed, of the newest frame set
+        self._unlearned: tuple[CueEstimates, dict[int, float], bool] | None = None
         self._shirt_trust, self._clothes_trust = CueTrust(), CueTrust()
         self._track_start_ns, self._ticks = 0, TickClock()
 
@@ -125,7 +125,6 @@ class BodyTracker:
         """See Tracker. Raises ConfigError when a frame's size is not its calibration's."""
         require_stature(shape, self._stature_m)
         self.learn()
-        self._t_ns = frames.t_ns
         self._ticks.pass_to(frames.t_ns)
         present = self._load(frames)
         self.probe("picture")
@@ -142,7 +141,7 @@ class BodyTracker:
         )
         if tracking is Tracking.LOST and not is_observed:
             state = None
-        self._state, self._unlearned = state, (estimates, present)
+        self._state, self._unlearned = state, (estimates, present, is_observed)
         if state is not None and self._shirt is not None:
             n, motion = self._shirt.model.n_shape, state.motion
             shape = update_shape(
@@ -167,12 +166,12 @@ class BodyTracker:
         from its estimate."""
         if self._unlearned is None:
             return
-        (estimates, present), self._unlearned = self._unlearned, None
+        (estimates, present, is_observed), self._unlearned = self._unlearned, None
         state, clothes = self._state, self._clothes
         if self._shirt is not None:
             self._shirt.learn(estimates.shirt, present, state is None)
         if clothes is not None:
-            if state is not None and state.by_shirt and state.t_ns == self._t_ns:
+            if state is not None and state.by_shirt and is_observed:
                 clothes.detect_keypoints(state.motion, state.t_ns, state.legs_since_ns)
                 self.probe("keypoints")
             clothes.learn(estimates.clothes, state is None, state is not None and state.by_shirt)

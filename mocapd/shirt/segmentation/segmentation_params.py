@@ -18,7 +18,8 @@ class SegmentationParams:
     cloth_sd: float = 0.04  # spread of the cloth's own colour, in white-balanced light [0..1]
     noise_sd: float = 0.015  # sensor noise and compression [0..1]
     shading_sd: float = 0.25  # spread of brightness over the cloth, as a share of the colour
-    background_penalty: float = 1.5  # added to background pixels [standard deviations]
+    # by how much nearer a colour must be for a pixel like its background to be either [standard deviations]
+    background_penalty: float = 1.5
     other_penalty: float = 1.5  # added to colours that are more frequent on other objects
     skin_penalty: float = 0.3  # by how much skin must be nearer than a colour of the shirt
     bare_threshold: float = 3.0  # from which on nothing is skin [standard deviations]

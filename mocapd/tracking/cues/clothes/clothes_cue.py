@@ -114,7 +114,7 @@ class ClothesCue:
         less often, by half of the cameras at once, and not for new legs that silhouettes found.
         """
         self.legs_rest = False
-        if self.cameras.are_new or not self.cameras.has_appearance:
+        if not self._knows_look:
             return None
         if (
             shirt_carries
@@ -138,7 +138,7 @@ class ClothesCue:
 
     def detect_keypoints(self, body: MotionState, t_ns: int, legs_since_ns: int | None) -> None:
         """Detects keypoints about a body that the shirt carries in this frame set, at t_ns, for the next fit of its legs."""
-        if self.cameras.are_new or not self.cameras.has_appearance:
+        if not self._knows_look:
             return
         cameras = self._detecting(self._are_new(t_ns, legs_since_ns))
         if cameras:
@@ -154,6 +154,11 @@ class ClothesCue:
         most = len(present) if is_new else (len(present) + 1) // 2
         every_s = self.params.guided_joints_s * work.network
         return self._legs.keypoints.take(present, self._ticks.last, every_s, most)
+
+    @property
+    def _knows_look(self) -> bool:
+        """True if each present camera has a background and an appearance model."""
+        return not self.cameras.are_new and self.cameras.has_appearance
 
     def _are_new(self, t_ns: int, legs_since_ns: int | None) -> bool:
         """True if the legs were found a moment ago."""

@@ -81,17 +81,16 @@ class DelayedKeypoints:
             found = newest.found.get(i)
             if found is None or i not in cameras.present:
                 return None
-            smaller = fitter.drawings[i].image_scale
-            crop = _moved_crop(found, newest.joints_m, joints_m, smaller)
+            before, now = (to_camera(found.rays.camera, one) for one in (newest.joints_m, joints_m))
+            crop = _moved_crop(found, before, now, fitter.drawings[i].image_scale)
             cameras.each[i].mark_person(found.odds, crop)
-            return _moved_rays(found.rays, newest.joints_m, joints_m)
+            return _moved_rays(found.rays, before, now)
 
         return move
 
 
-def _moved_rays(rays: JointRays, from_m: Floats, to_m: Floats) -> JointRays:
-    """As their joints go, from_m (J,3) to to_m (J,3)."""
-    before, now = to_camera(rays.camera, from_m), to_camera(rays.camera, to_m)
+def _moved_rays(rays: JointRays, before: Floats, now: Floats) -> JointRays:
+    """As their joints go in the camera's frame [m], from before (J,3) to now (J,3)."""
     deeper_m = (now[:, 2] - now[_HIPS, 2]) - (before[:, 2] - before[_HIPS, 2])
     is_before = np.minimum(before[:, 2], now[:, 2]) > _NEAREST_M
     z, z_now = (np.where(is_before, one[:, 2], 1.0)[:, None] for one in (before, now))
@@ -100,14 +99,11 @@ def _moved_rays(rays: JointRays, from_m: Floats, to_m: Floats) -> JointRays:
     return replace(rays, xy=rays.xy + way[j], farther_m=rays.farther_m + deeper_m[j])
 
 
-def _moved_crop(found: CameraKeypoints, from_m: Floats, to_m: Floats, smaller: float) -> PersonCrop:
-    """As the body's middle goes, in a picture that is `smaller` times smaller than the camera's."""
-    camera = found.rays.camera
-    focal = camera.K[[0, 1], [0, 1]] / smaller
-    before, now = (
-        to_camera(camera, middle_of(joints_m[_HIPS], joints_m[_NECK]))
-        for joints_m in (from_m, to_m)
-    )
-    if min(before[2], now[2]) < _NEAREST_M:
+def _moved_crop(found: CameraKeypoints, before: Floats, now: Floats, smaller: float) -> PersonCrop:
+    """As the middle of a body goes whose joints do, see `_moved_rays`, in a picture that is `smaller` times smaller than the
+    camera's."""
+    focal = found.rays.camera.K[[0, 1], [0, 1]] / smaller
+    then, here = (middle_of(joints[_HIPS], joints[_NECK]) for joints in (before, now))
+    if min(then[2], here[2]) < _NEAREST_M:
         return found.crop
-    return found.crop.moved(focal * (now[:2] / now[2] - before[:2] / before[2]))
+    return found.crop.moved(focal * (here[:2] / here[2] - then[:2] / then[2]))

@@ -66,7 +66,7 @@ class KeypointDetectors:
         """Returns a function that detects the keypoints of the predicted body in the camera of an index, if that is among
         `detecting` (None: all are), and marks the person in its picture."""
         detecting = cameras.present if detecting is None else detecting
-        if not self._networks or not detecting:
+        if not detecting:
             return no_detection
         here_m, _ = fitter.joints(predicted)
 
