@@ -1,9 +1,8 @@
-"""Limits of a Zenoh session for its peers: bytes, connections, time and threads.
+"""Limits of a Zenoh session for its peers: bytes, connections and time.
 
 Zenoh's defaults suit a network of trusted machines. A peer of this session may be a hanging game, or an attacker.
 """
 
-import os
 from typing import Any
 
 # Of others come queries and declarations of some hundred bytes. A larger message is put together
@@ -19,15 +18,6 @@ ACCEPT_PENDING = 512
 ACCEPT_TIMEOUT_MS = (
     2_000  # a handshake takes some milliseconds, and some tenths of a second by radio
 )
-
-# Zenoh closes the connection of a game that hangs with a call that waits up to 10 s for the bytes
-# that the game does not take (SO_LINGER), on one of the threads that also serve newcomers. So
-# there is one for each game and some more; one that waits costs 20 kB. Zenoh's own are 2.
-RX_THREADS = MAX_SESSIONS + 16
-RUNTIME_VARIABLE = "ZENOH_RUNTIME"
-RUNTIME = f"(rx: (worker_threads: {RX_THREADS}))"
-# Zenoh reads it when the first session of the process opens. What the user has set is left alone.
-os.environ.setdefault(RUNTIME_VARIABLE, RUNTIME)
 
 # Closing takes some milliseconds, but 10 s if a single peer does not read.
 CLOSE_S = 0.7

@@ -10,6 +10,7 @@ from typing import Self
 import zenoh
 
 from mocapd.bus.zenoh_close import close_soon
+from mocapd.bus.zenoh_linger import close_at_once
 from mocapd.capture.camera_thread.suspension import SuspensionWatch
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import MOST_NAME, CameraState, ClockAnswer
@@ -82,6 +83,7 @@ class CameraNode:
             _log.warning("%s", text)
         config = node_session_config(self._zenoh, self._params, self.name)
         session = self._opened.enter_context(open_session(self._zenoh, config))
+        self._opened.enter_context(close_at_once(session))
         handler = zenoh.handlers.Callback(self._answer_clock, indirect=False)
         self._opened.enter_context(session.declare_queryable(camera_wire.clock(self.name), handler))
         for camera in self.cameras:

@@ -65,7 +65,7 @@ def daemon_process(
     """A daemon that begins, alone in its surroundings, and its log, in whose folder it keeps everything; killed in
     the end."""
     dropped = ("MOCAPD_", "XDG_STATE_HOME", "XDG_RUNTIME_DIR", "RUNTIME_DIRECTORY", "JOURNAL")
-    env = {k: v for k, v in os.environ.items() if not k.startswith((*dropped, "ZENOH_RUNTIME"))}
+    env = {k: v for k, v in os.environ.items() if not k.startswith(dropped)}
     command = [
         *(*COMMAND, "run", *cameras, "--tracker", "canned"),
         *("--set", "osc.enabled=false", *words),

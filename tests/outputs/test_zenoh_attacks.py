@@ -1,8 +1,13 @@
 """What others do to the Zenoh socket: the short forms of `python -m tests.attacks`."""
 
+import os
+import socket
+import struct
 import subprocess
 import sys
 import time
+
+import psutil
 
 from mocapd.bus.zenoh_limits import MAX_MESSAGE_BYTES
 from mocapd.client import Client, Link
@@ -11,7 +16,7 @@ from tests.attacks.newcomers import times_s
 from tests.attacks.silent import silent_connections
 from tests.cli.own_time import end_within, own_time
 from tests.conftest import ROOT
-from tests.outputs.frames import free_port
+from tests.outputs.frames import eventually, free_port
 from tests.outputs.test_zenoh_sink import HEALTH
 from tests.outputs.zenoh_pair import GET_S, other_program, running_sink
 
@@ -68,6 +73,21 @@ def test_frozen_games_hold_up_neither_newcomers_nor_the_end() -> None:
         out, err = end_within(process, 5.0)
     assert (process.returncode, err) == (0, "")
     assert float(out) < 3.0  # Zenoh itself takes 10 s
+
+
+def test_no_connection_waits_to_be_closed() -> None:
+    with running_sink() as running, other_program(running.endpoint):
+
+        def lingering() -> list[bool]:
+            found = []
+            for connection in psutil.Process().net_connections("tcp"):
+                if connection.laddr.port == running.port and connection.raddr:
+                    with socket.socket(fileno=os.dup(connection.fd)) as own:
+                        option = own.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
+                        found.append(struct.unpack("ii", option)[0] != 0)
+            return found
+
+        assert eventually(lambda: lingering() == [False])
 
 
 def test_newcomers_are_served_beside_silent_connections() -> None:

@@ -6,7 +6,6 @@ from typing import Any
 
 import zenoh
 
-import mocapd.bus.zenoh_limits  # noqa: F401  the threads of the first session of the process
 from mocapd.errors import MocapdError, PermissionDeniedError, UnavailableError
 from mocapd.outputs.socket_owners import holder_of
 from mocapd.outputs.zenoh.zenoh_config import Params, listen_endpoints, session_config

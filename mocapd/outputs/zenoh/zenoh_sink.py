@@ -7,6 +7,7 @@ from typing import Any
 import zenoh
 
 from mocapd.bus.zenoh_close import close_soon
+from mocapd.bus.zenoh_linger import close_at_once
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.outputs import wire
 from mocapd.outputs.base import SinkStatus
@@ -53,6 +54,7 @@ class ZenohSink:
         for text in warnings(self._params):
             _log.warning("%s", text)
         session = self._opened.enter_context(open_session(self._params))
+        self._opened.enter_context(close_at_once(session))
         self._state.attach(session, self._opened)
         # undeclaring a publisher sends to every client, so it belongs to the close
         self._opened.callback(self._publishers.clear)
