@@ -42,22 +42,20 @@ class ShirtColours:
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibration:
     """None: no value available. Readers are in `calibration`, `session` and `wizard`; a tracker refuses to
-    start without a value that it needs."""
+    start without a value that it needs. assumes_rig: the rig was not measured, so the floor may be elsewhere."""
 
     rig: Rig | None = None
     wearer: Wearer = field(default_factory=Wearer)
     shirt: ShirtColours | None = None
+    assumes_rig: bool = False
 
     def overlaid(self, stronger: "Calibration") -> "Calibration":
         """Field by field the stronger record's value, or this one's where that is unknown."""
         shirt = self.shirt or stronger.shirt
         if self.shirt is not None and stronger.shirt is not None:
             shirt = self.shirt.overlaid(stronger.shirt)
-        return Calibration(
-            self.rig if stronger.rig is None else stronger.rig,
-            self.wearer.overlaid(stronger.wearer),
-            shirt,
-        )
+        by = self if stronger.rig is None else stronger
+        return Calibration(by.rig, self.wearer.overlaid(stronger.wearer), shirt, by.assumes_rig)
 
     def assuming(self, stature_m: float) -> "Calibration":
         """The same, with this height of the wearer [m] where none is known yet."""

@@ -8,6 +8,8 @@ import numpy as np
 from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.types import Camera, Floats
 
+_LEAST_BASELINE_M = 0.02
+
 
 def camera_from_world(camera: Camera) -> RigidTransform:
     """The camera's extrinsics."""
@@ -124,6 +126,12 @@ def rays(camera: Camera, pixels: Floats) -> tuple[Floats, Floats]:
 def centre(camera: Camera) -> Floats:
     """The optical centre (3,) in the world [m]."""
     return -camera.R.T @ camera.t_m
+
+
+def sees_from_one_place(cameras: Sequence[Camera]) -> bool:
+    """True for one camera, and for cameras whose optical centres are the same by their calibration."""
+    first_m = centre(cameras[0])
+    return all(np.linalg.norm(centre(one) - first_m) < _LEAST_BASELINE_M for one in cameras)
 
 
 def common_place(cameras: Sequence[Camera]) -> Floats:

@@ -102,7 +102,7 @@ def open_planned(plan: SessionPlan, progress: Progress, is_beginning: bool = Fal
     cache_dir, tracker = plan.config.cache_dir, plan.config.tracker
     calibration, rig_source = plan.calibration, plan.rig_source
     if plan.assumes_rig:
-        calibration = replace(calibration, rig=_assumed_rig(plan.cameras[0]))
+        calibration = replace(calibration, rig=_assumed_rig(plan.cameras[0]), assumes_rig=True)
         rig_source = "assumed"
     origin = open_origin(plan.origin, cache_dir, progress, is_beginning) if plan.origin else None
     if origin is not None and plan.calibrated is None:

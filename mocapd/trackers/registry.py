@@ -6,13 +6,11 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from mocapd.boundary.files import is_absent, is_file
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.each import Each, in_turn
 from mocapd.errors import ConfigError
-from mocapd.geometry.camera_model import centre
+from mocapd.geometry.camera_model import sees_from_one_place
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.tracking.base import Tracker, frozen_clock
 from mocapd.tracking.profiles import PROFILES
@@ -22,9 +20,6 @@ if TYPE_CHECKING:
     from mocapd.shirt.pose_database.database import PoseDatabase
 
 MapChunks = Callable[[Callable[[slice], None], Iterable[slice]], Iterable[None]]
-
-
-_LEAST_BASELINE_M = 0.02
 
 
 def _quiet(_: object) -> None:
@@ -92,12 +87,7 @@ def _pair_lacks(calibration: Calibration, cameras: Collection[str]) -> str:
     seeing = [camera for camera in calibration.rig.cameras if camera.name in cameras]
     if len(seeing) < 2:
         return f"needs two of the calibrated cameras ({', '.join(calibration.rig.names)})"
-    apart_m = max(
-        float(np.linalg.norm(centre(a) - centre(b)))
-        for i, a in enumerate(seeing)
-        for b in seeing[:i]
-    )
-    if apart_m < _LEAST_BASELINE_M:
+    if sees_from_one_place(seeing):
         return "needs cameras in two places: by the calibration all are in one"
     return ""
 
@@ -158,10 +148,13 @@ def _profile(name: str) -> TrackerEntry:
         lacking = _lacks(name, calibration, cameras)
         if lacking.get("clothes") and "shirt" in lacking and len(cameras) > 1:
             resources.warn(
-                f"legs and head are done without: the cue 'clothes' {lacking['clothes']}"
+                f"only somebody in the shirt is tracked: the cue 'clothes' {lacking['clothes']}"
             )
         shirt = "shirt" in lacking and (not lacking["shirt"] or "clothes" not in lacking)
-        clothes = "clothes" in lacking and (not lacking["clothes"] or not shirt)
+        # below the shirt it follows legs and head with one camera, too, if it knows where the floor is
+        clothes = "clothes" in lacking and (
+            not lacking["clothes"] or not shirt or not calibration.assumes_rig
+        )
         return build_body_tracker(
             name, calibration, _database(resources) if shirt else None, clothes, params, resources.tracking,
             resources.each, resources.now_ns,

@@ -49,7 +49,8 @@ class BodyTrackerParams:
 
 
 class BodyTracker:
-    """Tracks one person with the shirt (one camera or more) or any clothes (two or more); see `tracking.base.Tracker`.
+    """Tracks one person with the shirt (one camera or more) or any clothes (two or more); see `tracking.base.Tracker`. With
+    one camera, clothes follow legs and head below the shirt.
 
     `BodyState.tracker` names the cues that carry the body: `shirt`, `clothes` or both.
     """
@@ -82,7 +83,7 @@ class BodyTracker:
         self._initialisers: list[Initialiser] = [self._handed_over]
         if self._locator is not None:
             self._initialisers.append(ShirtPose(self._locator))
-        if clothes is not None:
+        if clothes is not None and clothes.alone:
             self._initialisers.append(ForegroundPerson(clothes))
         self._filter.rehearse(self._skeleton)
         for cue in self._cues:
@@ -229,9 +230,9 @@ class BodyTracker:
                 return self._solve_by_shirt(state, predicted, trunk, observed, dt_s, frames)
             locator.reset()
             return self._solve_by_shirt(separate, separate.motion, trunk, None, dt_s, frames)
-        if clothes is not None and clothes.legs_rest:
+        if clothes is not None and clothes.alone and clothes.legs_rest:
             observed = clothes.observe(predicted, t_ns, state.legs_since_ns, False)
-        if clothes is not None and observed is not None:
+        if clothes is not None and clothes.alone and observed is not None:
             whole = clothes.fit_whole_body(state, observed, dt_s, frames, self.probe)
         self._update_clothes_trust(whole, t_ns, len(present))
         trunk = None if separate is not None else trunk
@@ -249,7 +250,7 @@ class BodyTracker:
     def _shirt_carries(self, state: TrackState, t_ns: int) -> bool:
         """True if the shirt, which is visible, places trunk and arms in this frame set."""
         shirt, clothes = self._shirt_trust, self._clothes_trust
-        if self._clothes is None or self._locator is None:
+        if self._clothes is None or not self._clothes.alone or self._locator is None:
             return True
         if state.by_shirt:
             return shirt.trusted or shirt.is_good or not clothes.trusted

@@ -46,7 +46,9 @@ def cues(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, bool, bool, Profile
 @pytest.mark.parametrize(
     ("name", "calibration", "shirt", "clothes"),
     [
-        ("auto", known(0.0), True, False),
+        ("auto", known(0.0), True, True),
+        # where the floor is, nobody knows
+        ("auto", replace(known(0.0), assumes_rig=True), True, False),
         ("auto", known(0.0, 0.2), True, True),
         ("auto", known(0.0, 0.2, wearer=NO_SHIRT), False, True),
         ("shirt", known(0.0), True, False),
@@ -67,14 +69,14 @@ def test_a_profile_has_the_cues_that_rig_and_clothes_suit(
     assert messages == []
 
 
-def test_a_pair_in_one_place_has_the_shirt_alone_and_one_message_says_so(
+def test_a_pair_in_one_place_tracks_the_shirt_only_and_one_message_says_so(
     cues: list[tuple[str, bool, bool, ProfileParams | None]],
 ) -> None:
     messages: list[str] = []
     build("auto", known(0.0, 0.0), Resources(warn=messages.append))
-    assert cues == [("auto", True, False, None)]
+    assert cues == [("auto", True, True, None)]
     (message,) = messages
-    assert "legs and head" in message
+    assert "only somebody in the shirt" in message
     assert "all are in one" in message
 
 

@@ -184,9 +184,11 @@ class ScriptedShirt(_Scripted):
 class ScriptedClothes(_Scripted):
     """Stands in for `ClothesCue`."""
 
-    def __init__(self, script: Sequence[Sight], lost_reason: LostReason | None = None) -> None:
+    def __init__(
+        self, script: Sequence[Sight], lost_reason: LostReason | None = None, alone: bool = True
+    ) -> None:
         super().__init__(script, WHOLE)
-        self.rests_below_the_shirt = self.legs_rest = False
+        self.alone, self.rests_below_the_shirt, self.legs_rest = alone, False, False
         self.nobody = SimpleNamespace(body=np.zeros((1, 1), np.uint8))
         self._lost_reason = lost_reason
 
@@ -275,10 +277,11 @@ def scene(
     shirt: Sequence[Sight] | None,
     clothes: Sequence[Sight] | None,
     lost_reason: LostReason | None = None,
+    alone: bool = True,
 ) -> Scene:
-    """The cues from their scripts; None for a tracker without it."""
+    """The cues from their scripts; None for a tracker without it. alone: clothes place a whole body, too."""
     one = ScriptedShirt(shirt) if shirt is not None else None
-    other = ScriptedClothes(clothes, lost_reason) if clothes is not None else None
+    other = ScriptedClothes(clothes, lost_reason, alone) if clothes is not None else None
     tracker = BodyTracker(
         "auto", RIG, STATURE_M, cast("ShirtCue | None", one), cast("ClothesCue | None", other)
     )

@@ -237,6 +237,13 @@ def test_one_camera_is_enough_to_go_on_but_not_to_begin_with_clothes() -> None:
     assert carriers(before) == [NOBODY, BOTH, CLOTHES]
 
 
+def test_clothes_seen_from_one_place_follow_below_the_shirt_and_never_alone() -> None:
+    jacket = (Sight(0.0, None), Sight(1.0), Sight(2.0, None), Sight(5.0))
+    bodies = scene(jacket, ALWAYS, alone=False).run(7.0)
+    assert [name for name in carriers(bodies) if name != NOBODY] == [BOTH, BOTH]
+    assert at(bodies, 4.5).tracking is Tracking.LOST
+
+
 def test_no_frames_for_a_while_start_anew() -> None:
     one = scene((Sight(0.0), Sight(1.0, None)), (Sight(0.0, off_m=0.25),))
     one.run(1.0)

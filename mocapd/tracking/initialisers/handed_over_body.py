@@ -55,6 +55,6 @@ class HandedOverBody:
         trunk = whole = None
         if self._shirt is not None:
             trunk = self._shirt.start_from(start, wearer.taught_s, present, frame_index)
-        if self._clothes is not None:
+        if self._clothes is not None and (self._clothes.alone or trunk is not None):
             whole = self._clothes.start_from(start, frames)
         return None if trunk is None and whole is None else InitialPose(start, trunk, whole)

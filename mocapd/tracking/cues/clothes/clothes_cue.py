@@ -12,6 +12,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays
 from mocapd.fit.view import View
+from mocapd.geometry.camera_model import sees_from_one_place
 from mocapd.tracking.base import Probe, frozen_clock
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.clothes_solver import (
@@ -35,7 +36,8 @@ _DEPTHS, _JOINTS = 0, 1  # what alternates; also the look is learned in frames t
 class ClothesCue:
     """Keeps each camera's background, the appearance of each region, and a search in progress.
 
-    legs_rest: legs and head below a trunk that the shirt carries go on as they moved, in this frame set.
+    alone: it can place a whole body, which takes views from two places; else only legs and head below a trunk that the shirt
+    carries. legs_rest: these go on as they moved, in this frame set.
     """
 
     name = "clothes"
@@ -50,6 +52,7 @@ class ClothesCue:
     ) -> None:
         """now_ns: see `registry.Resources`."""
         self.params = p = params if params is not None else ClothesParams()
+        self.alone = not sees_from_one_place(rig.cameras)
         self._solver = solver = ClothesSolver(rig, stature_m, p, each)
         self.cameras, self.model = solver.cameras, solver.model
         self._delayed = DelayedKeypoints(solver.terms.joints)

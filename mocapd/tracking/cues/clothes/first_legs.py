@@ -16,7 +16,7 @@ from mocapd.tracking.hypotheses.base import ScoredFit
 from mocapd.tracking.ticks import Ticks
 from mocapd.types import Floats
 
-_CAMERAS = 2  # that are sure of knees and ankles
+_CAMERAS = 2  # that are sure of knees and ankles, where there are so many
 _LEGS = [INDEX[side + bone] for side in SIDES for bone in ("LowerLeg", "Foot")]
 
 
@@ -34,6 +34,7 @@ class FirstLegs:
         """silhouettes: a fitter whose body has one region."""
         self._silhouettes, self._terms, self._params = silhouettes, terms, params
         self._appearance, self._cameras = appearance, cameras
+        self._enough = min(_CAMERAS, len(cameras.each))
         self.reset()
 
     def reset(self) -> None:
@@ -101,7 +102,7 @@ class FirstLegs:
             if not found:
                 return None
             joints = found[0]
-            if joints.cameras_sure_of(_LEGS, self._params.first_spread_m).min() < _CAMERAS:
+            if joints.cameras_sure_of(_LEGS, self._params.first_spread_m).min() < self._enough:
                 return None
             held = (self._terms.floor, joints.trusting)
             pose = fitter.fit(start, (), dt_s, p.iterations, motion=trunk_prior, terms=held).state

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import INDEX
-from mocapd.geometry.camera_model import project
+from mocapd.geometry.camera_model import centre, project
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.setup import setup_of
 from mocapd.tracking.tracker_inputs import wearer_shape
-from mocapd.types import BodyState, FrameSet
+from mocapd.types import BodyState, FrameSet, Rig
 from tests.sim.simulated_calibration import calibration_of_setup
 from tests.tracking.profiles import auto_tracker
 from tests.tracking.shirt_film import Filmed, film
@@ -27,8 +27,12 @@ def filmed() -> Filmed:
     return film(stands=True, count=COUNT)
 
 
-def bodies(filmed: Filmed, database: PoseDatabase, sets: list[FrameSet]) -> list[BodyState]:
+def bodies(
+    filmed: Filmed, database: PoseDatabase, sets: list[FrameSet], cameras: int = 2
+) -> list[BodyState]:
     known = calibration_of_setup(setup_of(filmed.scenario, filmed.renderers))
+    assert known.rig is not None
+    known = replace(known, rig=Rig(known.rig.cameras[:cameras]))
     tracker = Stepping(auto_tracker(known, database), wearer_shape(known))
     return [tracker.step(one).body for one in sets]
 
@@ -39,6 +43,24 @@ def test_they_are_found_at_once(filmed: Filmed, pose_database: PoseDatabase) -> 
     assert found[-1].joints_m is not None
     off_m = np.linalg.norm(found[-1].joints_m - filmed.joints_m[-1], axis=1)[LEGS]
     assert off_m.max() < 0.12
+
+
+def test_one_camera_finds_them_across_its_view(filmed: Filmed, pose_database: PoseDatabase) -> None:
+    camera = filmed.renderers[0].camera
+    sets = [
+        replace(one, frames={camera.name: one.frames[camera.name]})
+        for one in filmed.frame_sets(filmed.pictures)
+    ]
+    found = bodies(filmed, pose_database, sets, cameras=1)
+    assert found[-1].tracker == "shirt+clothes"
+    assert found[-1].joints_m is not None
+    here_px, there_px = (
+        project(camera, joints_m[LEGS]) for joints_m in (found[-1].joints_m, filmed.joints_m[-1])
+    )
+    distance_m = np.linalg.norm(filmed.joints_m[-1][LEGS] - centre(camera), axis=1)
+    across_m = np.linalg.norm(here_px - there_px, axis=1) * distance_m / camera.K[0, 0]
+    assert np.median(across_m) < 0.04
+    assert across_m.max() < 0.12
 
 
 def test_behind_a_table_nobody_claims_them(filmed: Filmed, pose_database: PoseDatabase) -> None:
