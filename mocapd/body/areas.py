@@ -2,6 +2,9 @@
 
 from enum import IntEnum
 
+import numpy as np
+from numpy.typing import NDArray
+
 
 class Area(IntEnum):
     """The surface itself carries those of trunk and arms (`Surface.area`); evidence of a whole body adds the last ones."""
@@ -47,3 +50,8 @@ FOREARM_AREAS = {
 }
 SHOULDER_END = 0.45  # of the upper arm, from the shoulder
 FOREARM_END = 0.55  # of the forearm, from the elbow: then the wrist
+
+
+def on_arms(area: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Whether each area (T,) is one of an arm's."""
+    return (area >= Area.LEFT_SHOULDER) & (area <= Area.RIGHT_WRIST)

@@ -16,6 +16,12 @@ _FOREARM = np.array([[0.0, 0.0290], [0.10, 0.0290], [0.25, 0.0287], [0.40, 0.026
                      [0.75, 0.0205], [0.95, 0.0180]])  # fmt: skip
 _HAND = np.array([[1.0, 0.0150], [1.15, 0.0190], [1.35, 0.0220], [1.55, 0.0190], [1.72, 0.0080]])
 
+# front and back of the trunk, as far as the arm's tube is on its side of the shoulder joint
+_TRUNK_AT = {
+    "left": (Area.TORSO_FRONT_UPPER_LEFT, Area.TORSO_BACK_UPPER_LEFT),
+    "right": (Area.TORSO_FRONT_UPPER_RIGHT, Area.TORSO_BACK_UPPER_RIGHT),
+}
+
 
 def arm_tube(shape: BodyShape, skeleton: Skeleton, side: str) -> Tube:
     """Upper arm, forearm and hand of one side."""
@@ -57,7 +63,10 @@ def arm_tube(shape: BodyShape, skeleton: Skeleton, side: str) -> Tube:
         material[r] = TOP
         if r < n_upper:
             top = _UPPER_ARM[r + 1, 0] if r + 1 < n_upper else 1.0
-            if 0.5 * (_UPPER_ARM[r, 0] + top) < SHOULDER_END:
+            along = 0.5 * (_UPPER_ARM[r, 0] + top)
+            if along < 0.0:  # the shirt's sleeve begins at the shoulder joint's plane
+                area[r] = np.where(front, *_TRUNK_AT[side])
+            elif along < SHOULDER_END:
                 area[r] = shoulder
             else:
                 area[r] = np.where(front, upper_front, upper_back)

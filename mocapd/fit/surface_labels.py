@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.model import BodyModel
-from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
+from mocapd.body.areas import on_arms
 from mocapd.types import Bytes, Ints
 
 MAX_LABELS = 16  # all labels are smaller: kernels have a bit or a list of each
@@ -22,12 +21,9 @@ class SurfaceLabels:
     arms_start: Ints  # (MAX_LABELS + 1,) first place in `arms` of each label, and the end
 
 
-def surface_labels(
-    model: BodyModel, label: NDArray[np.uint8], area: NDArray[np.uint8]
-) -> SurfaceLabels:
+def surface_labels(label: NDArray[np.uint8], area: NDArray[np.uint8]) -> SurfaceLabels:
     """Labels and areas (T,) of a body's triangles."""
-    on_arms = (model.part == LEFT_ARM) | (model.part == RIGHT_ARM)
-    labelled = np.flatnonzero(on_arms & (label > 0))
+    labelled = np.flatnonzero(on_arms(area) & (label > 0))
     arms = labelled[np.argsort(label[labelled], kind="stable")]
     start = np.searchsorted(label[arms], np.arange(MAX_LABELS + 1))
     return SurfaceLabels(label, area, arms, start)

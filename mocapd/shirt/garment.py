@@ -13,7 +13,7 @@ from mocapd.shirt.standard_shirt import standard_shirt
 @lru_cache(maxsize=8)
 def shirt_labels(model: BodyModel) -> SurfaceLabels:
     """Of a body in the shirt: labels are its colours 1..10; pixels are counted in its patches."""
-    return surface_labels(model, standard_shirt().colour_of_patch[model.area], model.area)
+    return surface_labels(standard_shirt().colour_of_patch[model.area], model.area)
 
 
 def confirmed_colours(fit: Fit) -> int:

@@ -114,6 +114,10 @@ def test_arm_patches_are_where_the_standard_says(shape: BodyShape, side: str) ->
         assert inside.sum() >= 12
         np.testing.assert_array_equal(patch[inside], wanted[inside])
         assert (material[inside] == TOP).all()
+    trunk = upper < 0.0  # on this side of the shoulder joint's plane
+    assert trunk.sum() >= 24
+    of_trunk = np.where(upper_front > 0, 1, 5) + (side == "right")
+    np.testing.assert_array_equal(patch[trunk], of_trunk[trunk])
     hand = fore > FRACTIONS["cuff"][1]
     assert (patch[hand] == 0).all()
     assert (material[hand] == SKIN).all()

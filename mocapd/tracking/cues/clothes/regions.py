@@ -6,7 +6,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.areas import Area
+from mocapd.body.areas import Area, on_arms
 from mocapd.body.model import BodyModel
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
@@ -59,7 +59,7 @@ def merged_labels(model: BodyModel, worn: Sequence[int] | NDArray[np.uint8]) -> 
     """Of a whole body: that of each region or band, by its number. Raises ValueError for a body without legs of its own."""
     if not model.space.whole:
         raise ValueError("a body of the upper pose space has no legs")
-    return surface_labels(model, np.asarray(worn, np.uint8)[regions(model)], _areas(model))
+    return surface_labels(np.asarray(worn, np.uint8)[regions(model)], _areas(model))
 
 
 def regions(model: BodyModel) -> NDArray[np.uint8]:
@@ -103,7 +103,9 @@ def _areas(model: BodyModel) -> NDArray[np.uint8]:
         ("right", RIGHT_ARM, RIGHT_LEG, Area.RIGHT_WRIST, Area.RIGHT_THIGH, Area.RIGHT_SHIN),
     ):
         on_arm = model.part == arm
-        out[on_arm] = np.where(model.area[on_arm] > 0, model.area[on_arm], wrist)
+        sleeve = on_arm & on_arms(model.area)
+        out[sleeve] = model.area[sleeve]
+        out[on_arm & (model.area == Area.NONE)] = wrist
         lower = np.isin(
             main,
             [INDEX[side + bone] for bone in ("LowerLeg", "Foot", "Toes") if side + bone in INDEX],

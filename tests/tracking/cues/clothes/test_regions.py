@@ -79,6 +79,8 @@ def test_pixels_are_counted_by_limb() -> None:
     assert centres[of == Area.HEAD, 1].min() > centres[of == Area.TORSO, 1].mean()
     assert not np.isin(of, TORSO_QUARTERS).any()
     on_arms = np.isin(BODY.part, (LEFT_ARM, RIGHT_ARM))
-    carried = on_arms & (BODY.area > 0)
-    assert (of[carried] == BODY.area[carried]).all()
-    assert set(of[on_arms & ~carried].tolist()) == {Area.LEFT_WRIST, Area.RIGHT_WRIST}
+    sleeves = on_arms & (BODY.area >= Area.LEFT_SHOULDER)
+    assert (of[sleeves] == BODY.area[sleeves]).all()
+    trunk = on_arms & (BODY.area > 0) & ~sleeves
+    assert (of[trunk] == Area.TORSO).all()
+    assert set(of[on_arms & (BODY.area == 0)].tolist()) == {Area.LEFT_WRIST, Area.RIGHT_WRIST}
