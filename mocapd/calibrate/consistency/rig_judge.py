@@ -205,6 +205,8 @@ def _contradicting(
         off_deg = np.array([fit.angle_deg for fit in mine])
         if len({key[2] for key in given if i in key[:2]}) < _LEAST_STRETCHES:
             continue
+        if np.mean([fit.cost < _AGREES for fit in mine]) > _AGAINST:
+            continue
         if np.percentile(off_deg, 25) > (_CONTRADICT_DEG if moves_alike[i] else _STRANGE_DEG):
             out.append((i, camera.name, float(np.median(off_deg))))
     if not out:
