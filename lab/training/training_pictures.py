@@ -48,11 +48,12 @@ _GREY = (128, 128, 128)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Example:
-    """One picture; see above."""
+    """One picture; see above. turns (J,3,3): from each joint's bone, as in the T-pose, to the camera's frame."""
 
     picture: Bytes
     uv: Floats
     farther: Floats
+    turns: Floats
 
 
 def examples_of(
@@ -85,8 +86,7 @@ def examples_of(
             closed.append(PersonBody(behind.closed))
         shown = renderer.picture_of_group(opened, closed, levels, int(rng.integers(1 << 20)))
         mask = renderer.mask_of_group(middle)
-        joints_m = joint_positions(world.skeleton, pose.middle)
-        example = _example(renderer.camera, (shown, empty, mask), joints_m, world.shape.stature_m)
+        example = _example(renderer.camera, (shown, empty, mask), world, pose.middle)
         if example is not None:
             out.append(example)
     return out
@@ -139,10 +139,11 @@ def _moved(pose: MovingPose, by_m: Floats) -> MovingPose:
 
 
 def _example(
-    camera: Camera, pictures: tuple[Bytes, Bytes, Bytes], joints_m: Floats, stature_m: float
+    camera: Camera, pictures: tuple[Bytes, Bytes, Bytes], world: World, pose: Pose
 ) -> Example | None:
     """What is about the person, unless that is too near; pictures: with, without anybody, and where the person is."""
-    there_m = to_camera(camera, joints_m)
+    joints_m, quats = joint_positions(world.skeleton, pose), pose.quats_xyzw
+    there_m, stature_m = to_camera(camera, joints_m), world.shape.stature_m
     if there_m[:, 2].min() < _NEAREST_M:
         return None
     size = stature_m / STATURE_M
@@ -155,7 +156,8 @@ def _example(
     ]
     uv = project(camera, joints_m)[_JOINTS] * crop.scale + crop.corner_px
     farther = (there_m[_JOINTS, 2] - there_m[0, 2]) / size
-    return Example(np.dstack(crops), uv, farther)
+    turns = camera.R @ rotations.to_matrix(quats[_JOINTS])
+    return Example(np.dstack(crops), uv, farther, turns)
 
 
 def main() -> int:

@@ -2,7 +2,8 @@
 
 Girths are means of adults as fractions of stature (ANSUR II, 2012: circumferences of thigh 0.36 to 0.38,
 calf 0.225 and ankle 0.13 statures; foot length 0.153, breadth 0.058), 0.003 to 0.006 added for cloth and
-shoes. Each ring of a leg moves with the bones that it is near to.
+shoes. How far the flesh is in front of the bone is the mean of a man and a woman, see `trunk_tubes`: thighs lie in front of
+the line from hip to knee, calves behind that from knee to ankle. Each ring of a leg moves with the bones that it is near to.
 """
 
 import numpy as np
@@ -22,17 +23,17 @@ from mocapd.types import Floats, Skeleton
 
 # Along the bone from its upper end: fraction of its length, half width, half depth, how far in front of
 # the bone; in statures.
-_THIGH = np.array([[-0.10, 0.052, 0.056, 0.000], [0.05, 0.060, 0.064, 0.000], [0.20, 0.061, 0.064, 0.002],
-                   [0.40, 0.055, 0.059, 0.004], [0.60, 0.049, 0.053, 0.005], [0.80, 0.043, 0.046, 0.004],
-                   [0.93, 0.041, 0.042, 0.003]])  # fmt: skip
-_SHANK = np.array([[0.06, 0.039, 0.040, 0.001], [0.20, 0.039, 0.041, -0.004], [0.32, 0.038, 0.041, -0.006],
-                   [0.50, 0.034, 0.037, -0.005], [0.70, 0.029, 0.031, -0.002], [0.88, 0.026, 0.028, 0.000],
+_THIGH = np.array([[-0.10, 0.052, 0.056, 0.004], [0.05, 0.060, 0.064, 0.006], [0.20, 0.061, 0.064, 0.011],
+                   [0.40, 0.055, 0.059, 0.015], [0.60, 0.049, 0.053, 0.013], [0.80, 0.043, 0.046, 0.008],
+                   [0.93, 0.041, 0.042, 0.004]])  # fmt: skip
+_SHANK = np.array([[0.06, 0.039, 0.040, -0.005], [0.20, 0.039, 0.041, -0.014], [0.32, 0.038, 0.041, -0.015],
+                   [0.50, 0.034, 0.037, -0.014], [0.70, 0.029, 0.031, -0.009], [0.88, 0.026, 0.028, -0.003],
                    [0.97, 0.025, 0.027, 0.000]])  # fmt: skip
 # From heel to tip: how far in front of the ankle joint, half width, height of the upper side over the
 # sole; in statures. The ankle joint is 0.0455 over the sole.
-_FOOT = np.array([[-0.047, 0.012, 0.030], [-0.042, 0.020, 0.046], [-0.028, 0.024, 0.058], [-0.008, 0.026, 0.062],
-                  [0.014, 0.026, 0.056], [0.040, 0.028, 0.045], [0.066, 0.031, 0.036], [0.084, 0.031, 0.030],
-                  [0.104, 0.025, 0.024], [0.114, 0.014, 0.017]])  # fmt: skip
+_FOOT = np.array([[-0.038, 0.012, 0.030], [-0.034, 0.020, 0.046], [-0.022, 0.024, 0.058], [-0.004, 0.026, 0.062],
+                  [0.017, 0.026, 0.056], [0.042, 0.028, 0.045], [0.067, 0.031, 0.036], [0.085, 0.031, 0.030],
+                  [0.105, 0.025, 0.024], [0.115, 0.014, 0.017]])  # fmt: skip
 _ANKLE_HEIGHT = 0.0455
 
 
@@ -127,10 +128,10 @@ def plain_leg_tube(shape: BodyShape, skeleton: Skeleton, side: str) -> Tube:
     )
     spans = [
         (foot - [0, 0.024 * h, 0], 0.020, 0.048, 0.030), (foot, 0.024, 0.030, 0.004),
-        (foot + 0.35 * (knee - foot), 0.027, 0.028, -0.002),
-        (foot + 0.70 * (knee - foot), 0.033, 0.035, -0.004), (knee, 0.034, 0.036, 0.004),
-        (knee + 0.4 * (hip - knee), 0.042, 0.045, 0.006), (knee + 0.8 * (hip - knee), 0.050, 0.052, 0.003),
-        (hip + [0, 0.02 * h, 0], 0.046, 0.050, 0.0),
+        (foot + 0.35 * (knee - foot), 0.027, 0.028, -0.009),
+        (foot + 0.70 * (knee - foot), 0.033, 0.035, -0.015), (knee, 0.034, 0.036, 0.000),
+        (knee + 0.4 * (hip - knee), 0.042, 0.045, 0.013), (knee + 0.8 * (hip - knee), 0.050, 0.052, 0.010),
+        (hip + [0, 0.02 * h, 0], 0.046, 0.050, 0.004),
     ]  # fmt: skip
     angle = 2 * np.pi * np.arange(LIMB_COLUMNS) / LIMB_COLUMNS
     rings, weights = [], []

@@ -1,4 +1,9 @@
-"""Trunk and head as tubes. Breadths and depths are means of adults as fractions of stature (ANSUR II)."""
+"""Trunk and head as tubes. Breadths and depths are means of adults as fractions of stature (ANSUR II).
+
+How far the flesh is in front of the joints is the mean of an average man and an average woman of MakeHuman's body, whose
+joints are where character rigs turn (MPFB2: base mesh, its `macrodetails` targets, `rig.default`; CC0). Belly and chest lie
+some 2 % of the stature in front of the line from hips to neck, and the head as much in front of the neck.
+"""
 
 import numpy as np
 
@@ -22,23 +27,23 @@ _LOWER_QUARTERS = (
     Area.TORSO_BACK_LOWER_RIGHT,
     Area.TORSO_BACK_LOWER_LEFT,
 )
-# Per height: fraction of the way from hips (0) to neck joint (1), half width, extent in front of
-# and behind the line hips-neck, exponent of the superellipse. Widths and depths in statures.
+# Per height: fraction of the way from hips (0) to neck joint (1), half width, half depth, how far its middle is in front of
+# the line hips-neck, exponent of the superellipse. In statures.
 _TORSO_PROFILE = np.array([
-    [-0.270, 0.088, 0.058, 0.070, 2.4],
-    [-0.100, 0.098, 0.066, 0.076, 2.4],
-    [0.000, 0.096, 0.068, 0.072, 2.4],
-    [0.120, 0.089, 0.068, 0.062, 2.4],
-    [0.250, 0.083, 0.066, 0.056, 2.4],
-    [0.375, 0.083, 0.068, 0.056, 2.4],
-    [0.500, 0.086, 0.073, 0.060, 2.5],
-    [0.600, 0.090, 0.076, 0.065, 2.5],
-    [0.680, 0.093, 0.073, 0.069, 2.5],
-    [0.750, 0.097, 0.066, 0.068, 2.4],
-    [0.820, 0.101, 0.056, 0.063, 2.3],
-    [0.890, 0.094, 0.045, 0.055, 2.1],
-    [0.945, 0.073, 0.036, 0.047, 2.0],
-    [1.000, 0.045, 0.030, 0.038, 2.0],
+    [-0.270, 0.088, 0.0640, 0.003, 2.4],
+    [-0.100, 0.098, 0.0710, -0.002, 2.4],
+    [0.000, 0.096, 0.0700, 0.007, 2.4],
+    [0.120, 0.089, 0.0650, 0.017, 2.4],
+    [0.250, 0.083, 0.0610, 0.021, 2.4],
+    [0.375, 0.083, 0.0620, 0.022, 2.4],
+    [0.500, 0.086, 0.0665, 0.022, 2.5],
+    [0.600, 0.090, 0.0705, 0.019, 2.5],
+    [0.680, 0.093, 0.0710, 0.0135, 2.5],
+    [0.750, 0.097, 0.0670, 0.007, 2.4],
+    [0.820, 0.101, 0.0595, 0.003, 2.3],
+    [0.890, 0.094, 0.0500, 0.001, 2.1],
+    [0.945, 0.073, 0.0415, 0.004, 2.0],
+    [1.000, 0.045, 0.0340, 0.000, 2.0],
 ])  # fmt: skip
 
 
@@ -52,14 +57,22 @@ def torso_tube(shape: BodyShape, skeleton: Skeleton) -> Tube:
     # the half width follows the torso below and the shoulder girdle above
     girdle = np.clip((f - 0.55) / 0.3, 0.0, 1.0)
     a = profile[:, 1] * shape.stature_m * ((1 - girdle) * width + girdle * shoulders)
-    front, back = (profile[:, i] * shape.stature_m * depth for i in (2, 3))
-    angle = 2 * np.pi * np.arange(_TORSO_COLUMNS) / _TORSO_COLUMNS  # 0: left side, 90 deg: front
-    c, s = np.cos(angle)[None], np.sin(angle)[None]
+    half_depth, middle = (profile[:, i : i + 1] * shape.stature_m for i in (2, 3))
     power = 2.0 / profile[:, 4:5]
+    # 0: left side, 90 deg: front. Half of the columns lie in front of the line hips-neck, where the shirt's front ends,
+    # and not in front of the middle
+    behind = np.arcsin(np.sign(middle) * (np.abs(middle) / half_depth) ** (1.0 / power))
+    half_round = np.arange(_TORSO_COLUMNS) * 2 / _TORSO_COLUMNS
+    angle = np.where(
+        half_round <= 1.0,
+        -behind + half_round * (np.pi + 2 * behind),
+        np.pi + behind + (half_round - 1.0) * (np.pi - 2 * behind),
+    )
+    c, s = np.cos(angle), np.sin(angle)
+    c = np.where(np.abs(c) < 1e-9, 0.0, c)
     x = a[:, None] * np.sign(c) * np.abs(c) ** power
-    extent = np.where(s >= 0, front[:, None], back[:, None])
-    z = np.where(np.abs(s) < 1e-9, 0.0, extent * np.sign(s) * np.abs(s) ** power)
-    x = np.where(np.abs(c) < 1e-9, 0.0, x)
+    z = half_depth * depth * np.sign(s) * np.abs(s) ** power + middle
+    z = np.where(np.isin(half_round, (0.0, 1.0)), 0.0, z)
     rings = np.stack([x, np.broadcast_to(centre[:, 1:2], x.shape), z + centre[:, 2:3]], axis=-1)
     area = np.zeros((len(f) - 1, _TORSO_COLUMNS), dtype=np.uint8)
     mid = 0.5 * (f[:-1] + f[1:])
@@ -105,9 +118,9 @@ def head_tube(shape: BodyShape, skeleton: Skeleton) -> Tube:
     h = shape.stature_m * shape.factor("head_size")
     neck, head = skeleton.rest_m[INDEX["neck"]], skeleton.rest_m[INDEX["head"]]
     table = np.array([
-        [-0.02, 0.036, 0.036, -0.004], [0.010, 0.033, 0.036, 0.0], [0.030, 0.034, 0.042, 0.008],
-        [0.045, 0.038, 0.052, 0.012], [0.070, 0.043, 0.056, 0.012], [0.095, 0.0435, 0.056, 0.010],
-        [0.118, 0.037, 0.048, 0.008], [0.135, 0.020, 0.026, 0.004],
+        [-0.02, 0.036, 0.036, 0.008], [0.010, 0.033, 0.036, 0.014], [0.030, 0.034, 0.044, 0.022],
+        [0.045, 0.038, 0.052, 0.028], [0.070, 0.043, 0.056, 0.028], [0.095, 0.0435, 0.056, 0.025],
+        [0.118, 0.037, 0.048, 0.022], [0.135, 0.020, 0.026, 0.018],
     ])  # fmt: skip
     angle = 2 * np.pi * np.arange(LIMB_COLUMNS) / LIMB_COLUMNS
     y = neck[1] + table[:, 0] * h

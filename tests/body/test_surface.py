@@ -11,13 +11,21 @@ from mocapd.assets import asset_path
 from mocapd.body.shape import N_FACTORS, BodyShape, mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.body.surface import (
+    HEAD,
     LEFT_ARM,
+    LEFT_LEG,
     RIGHT_ARM,
+    RIGHT_LEG,
     SKIN,
     TOP,
     TORSO,
 )
-from mocapd.body.surface_building import build_surface, mean_surface, shape_derivatives
+from mocapd.body.surface_building import (
+    build_surface,
+    build_whole_surface,
+    mean_surface,
+    shape_derivatives,
+)
 from mocapd.shirt.standard_shirt import N_PATCHES, standard_shirt
 from mocapd.types import Floats, Ints
 
@@ -195,3 +203,24 @@ def test_the_surface_is_linear_in_the_shape_factors() -> None:
 def test_the_surface_grows_with_stature() -> None:
     small, tall = mean_surface(1.5).vertices_m, mean_surface(1.8).vertices_m
     np.testing.assert_allclose(tall, 1.2 * small, atol=1e-9)
+
+
+def test_flesh_lies_about_the_joints_as_people_have_it() -> None:
+    """Belly, chest and head lie in front of the line of the joints; thighs in front of hip-knee, calves behind knee-ankle.
+    Drawn about the joints' line, hips and head were found 2 to 3 cm in front of where they turn."""
+    shape = mean_shape(1.0)
+    surface, rest = build_whole_surface(shape), skeleton_of(shape).rest_m
+
+    def ahead(part: int, start: str, end: str, along: float) -> float:
+        """Of the middle of the flesh about a point of a bone [statures]."""
+        a, b = rest[INDEX[start]], rest[INDEX[end]]
+        at = a + along * (b - a)
+        corners = surface.vertices_m[surface.triangles[surface.part == part]].reshape(-1, 3)
+        z = corners[np.abs(corners[:, 1] - at[1]) < 0.015, 2]
+        return float(0.5 * (z.min() + z.max()) - at[2])
+
+    assert 0.015 < ahead(TORSO, "hips", "neck", 0.35) < 0.03
+    assert 0.010 < ahead(HEAD, "neck", "head", 1.0) < 0.03
+    for side, part in (("left", LEFT_LEG), ("right", RIGHT_LEG)):
+        assert 0.005 < ahead(part, side + "UpperLeg", side + "LowerLeg", 0.4) < 0.02
+        assert -0.02 < ahead(part, side + "LowerLeg", side + "Foot", 0.3) < -0.005

@@ -90,7 +90,8 @@ def test_the_way_out_is_the_nearest_side() -> None:
     outward = np.empty(3)
     R = np.eye(3)
     hips, top = BODY.rest[INDEX["hips"]], BODY.rest[INDEX["upperChest"]]
-    middle = 0.5 * (hips + top)
+    ahead = float(TORSO.half_m[:, 2].mean())
+    middle = 0.5 * (hips + top) + [0.0, 0.0, ahead]
     beside = middle + [0.10, 0.0, 0.0]
     depth = depth_in_torso(beside, hips, top, R, *TORSO, outward)
     assert depth > 0.0

@@ -7,9 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from lab.simulated.motion_clip import read_clip
+from lab.training.keypoint_marks import marks
 from lab.training.random_poses import random_pose
 from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
-from mocapd.vision.heatmaps.joint_network import JOINTS
+from mocapd.geometry import rotations
+from mocapd.vision.heatmaps.joint_network import JOINTS, MARKS, STATURE_M
 from tests.lab.test_train_arm_motion import clip
 
 
@@ -51,3 +53,15 @@ def test_joints_are_on_somebody_who_was_not_in_the_empty_picture(tmp_path: Path)
     mask = pictures[..., 6] > 127
     assert mask[np.arange(len(off))[:, None], at[..., 1], at[..., 0]].mean() > 0.9
     assert np.median(off[mask]) > 2.0 * np.median(off[~mask])
+
+
+def test_marks_beside_joints_are_found_among_outliers() -> None:
+    """`MARKS` are what explains how far beside the joints the network marks them, in pictures from all sides."""
+    rng = np.random.default_rng(5)
+    n, j = 600, len(JOINTS)
+    turns = rotations.to_matrix(rotations.exp(rng.normal(0.0, 1.5, (n, j, 3))))
+    spread_m = rng.uniform(0.03, 0.10, (n, j))
+    off_m = np.einsum("njab,jb->nja", turns[:, :, :2], MARKS * STATURE_M)
+    off_m += 0.5 * spread_m[..., None] * rng.normal(size=(n, j, 2))
+    off_m[rng.uniform(size=(n, j)) < 0.1] += 0.4  # the other hand
+    np.testing.assert_allclose(marks(off_m, spread_m, turns), MARKS, atol=0.003)

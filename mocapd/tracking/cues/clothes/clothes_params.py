@@ -46,7 +46,7 @@ class StartParams:
     turned_rad: float = (
         1.6  # between the facing of fit and keypoints, above which the body is turned about,
     )
-    turned_less: float = 0.1  # unless silhouette and body then agree by so much less
+    turned_less: float = 0.15  # unless silhouette and body then agree by so much less
     longest_s: float = 0.5  # of a search in one frame set, before it continues in the next
     walked_m: float = 1.0  # by the person during the search, at most
     walks_m_s: float = (

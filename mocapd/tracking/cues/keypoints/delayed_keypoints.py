@@ -60,12 +60,12 @@ class DelayedKeypoints:
         detecting: Collection[int],
     ) -> None:
         """Detects a body's keypoints in the pictures of t_ns, of these cameras."""
-        joints_m, _ = fitter.joints(body)
+        joints = fitter.joints(body)
         each = fitter.each(
-            lambda i: self._detectors.detect(fitter, body, joints_m, cameras, i), detecting
+            lambda i: self._detectors.detect(fitter, body, joints, cameras, i), detecting
         )
         found = {i: one for i, one in zip(detecting, each, strict=True) if one is not None}
-        self._newest = _Detection(t_ns, joints_m, found)
+        self._newest = _Detection(t_ns, joints[0], found)
 
     def take(
         self, fitter: Fitter, predicted: MotionState, t_ns: int, cameras: CameraViews

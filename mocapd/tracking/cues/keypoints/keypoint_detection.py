@@ -12,6 +12,7 @@ from mocapd.fit.motion_state import MotionState, predict_state
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays, JointTerm
 from mocapd.geometry.camera_model import to_camera, undistort
+from mocapd.geometry.rotations import rotate
 from mocapd.tracking.cues.clothes.camera_views import CameraView, CameraViews
 from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
 from mocapd.types import Bytes, Floats, Singles
@@ -19,13 +20,14 @@ from mocapd.vision.heatmaps.joint_network import (
     CELLS,
     INPUT_PX,
     JOINTS,
+    MARKS,
     SIDE_M,
     STATURE_M,
     JointNetwork,
 )
 from mocapd.vision.heatmaps.person_crop import PersonCrop, crop_about, middle_of
 
-_JOINTS = np.array([INDEX[name] for name in JOINTS])
+_JOINTS, _HIPS_MAP = np.array([INDEX[name] for name in JOINTS]), JOINTS.index("hips")
 _HIPS, _NECK = INDEX["hips"], INDEX["neck"]
 _NEAREST_M = 0.5
 _ITERATIONS = 5  # of undistortion: no keypoint is accurate to a thousandth of a pixel
@@ -68,12 +70,12 @@ class KeypointDetectors:
         detecting = cameras.present if detecting is None else detecting
         if not detecting:
             return no_detection
-        here_m, _ = fitter.joints(predicted)
+        here = fitter.joints(predicted)
 
         def detect(i: int) -> JointRays | None:
             if i not in detecting:
                 return None
-            found = self.detect(fitter, predicted, here_m, cameras, i)
+            found = self.detect(fitter, predicted, here, cameras, i)
             if found is None:
                 return None
             cameras.each[i].mark_person(found.odds, found.crop)
@@ -82,15 +84,21 @@ class KeypointDetectors:
         return detect
 
     def detect(
-        self, fitter: Fitter, body: MotionState, joints_m: Floats, cameras: CameraViews, index: int
+        self,
+        fitter: Fitter,
+        body: MotionState,
+        joints: tuple[Floats, Floats],
+        cameras: CameraViews,
+        index: int,
     ) -> CameraKeypoints | None:
-        """Detects the keypoints of a body with joints at joints_m (J,3) in one picture; None too near to the camera."""
+        """Detects the keypoints of a body in one picture; None too near to the camera. joints: its centres (J,3) and
+        rotations (J,4)."""
         if not self._networks:
             return None
-        late_s, there_m = cameras.present[index], joints_m
+        late_s, there_m = cameras.present[index], joints[0]
         if late_s:
             there_m, _ = fitter.joints(predict_state(fitter.model, body, late_s))
-        return self._detect(fitter, index, cameras.each[index], joints_m, there_m)
+        return self._detect(fitter, index, cameras.each[index], joints, there_m)
 
     def term(self, model: BodyModel, rays: Iterable[JointRays | None]) -> tuple[JointTerm, ...]:
         """The detections as a term of the fit; empty without detections."""
@@ -98,9 +106,14 @@ class KeypointDetectors:
         return (JointTerm(model, found, self._params.term),) if found else ()
 
     def _detect(
-        self, fitter: Fitter, index: int, view: CameraView, here_m: Floats, there_m: Floats
+        self,
+        fitter: Fitter,
+        index: int,
+        view: CameraView,
+        here: tuple[Floats, Floats],
+        there_m: Floats,
     ) -> CameraKeypoints | None:
-        """here_m (J,3): the joints at the frame set's instant, there_m (J,3) at the camera's own."""
+        """here: joints (J,3) and rotations (J,4) at the frame set's instant; there_m (J,3): joints at the camera's own."""
         p, size, drawing = self._params, self._relative_size, fitter.drawings[index]
         camera, k = drawing.camera, drawing.image_scale
         in_camera = to_camera(camera, there_m)
@@ -114,8 +127,12 @@ class KeypointDetectors:
         distorted = (frame_px - camera.K[:2, 2]) / camera.K[[0, 1], [0, 1]]
         xy = undistort(camera.dist, distorted, _ITERATIONS)
         # what moved until this camera's own exposure
-        moved_m = in_camera - to_camera(camera, here_m)
+        moved_m = in_camera - to_camera(camera, here[0])
         xy = xy - moved_m[_JOINTS, :2] / middle[2]
+        # from what the network marks to the joint
+        marks_m = STATURE_M * size * rotate(here[1][_JOINTS], MARKS) @ camera.R.T
+        xy = xy - (marks_m[:, :2] - xy * marks_m[:, 2:]) / middle[2]
+        farther_m = size * heatmaps.farther_m - (marks_m[:, 2] - marks_m[_HIPS_MAP, 2])
         inside = (
             (heatmaps.at_cells > p.inside_cells) & (heatmaps.at_cells < CELLS - 1 - p.inside_cells)
         ).all(axis=1)
@@ -125,7 +142,7 @@ class KeypointDetectors:
         sd_m = np.maximum(p.laplace * heatmaps.scale_m * size, p.least_depth_m)
         rays = JointRays(
             camera, _JOINTS[inside], xy[inside], information[inside],
-            size * heatmaps.farther_m[inside], (1.0 / sd_m**2)[inside],
+            farther_m[inside], (1.0 / sd_m**2)[inside],
         )  # fmt: skip
         return CameraKeypoints(rays, heatmaps.mask_odds, crop)
 

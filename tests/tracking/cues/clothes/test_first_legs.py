@@ -18,7 +18,7 @@ from tests.tracking.stepping import Stepping
 
 pytestmark = pytest.mark.kernels
 
-COUNT = 15
+COUNT = 30  # a second
 LEGS = [INDEX[side + bone] for side in ("left", "right") for bone in ("LowerLeg", "Foot")]
 
 
