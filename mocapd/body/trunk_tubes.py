@@ -1,7 +1,7 @@
 """Trunk and head as tubes. Breadths and depths are means of adults as fractions of stature (ANSUR II).
 
 How far the flesh is in front of the joints is the mean of an average man and an average woman of MakeHuman's body, whose
-joints are where character rigs turn (MPFB2: base mesh, its `macrodetails` targets, `rig.default`; CC0). Belly and chest lie
+joints are where character rigs turn (MPFB2: base mesh, macro targets, default rig; CC0). Belly and chest lie
 some 2 % of the stature in front of the line from hips to neck, and the head as much in front of the neck.
 """
 

@@ -43,6 +43,8 @@ def read_beginning(path: Path, most_bytes: int) -> bytes:
                 raise InputError("has nothing to read", str(path), _FIX)
             return data
     except FileNotFoundError:
+        if path.exists():  # written a moment after it was looked for
+            return read_beginning(path, most_bytes)
         if not is_absent(path):
             raise InputError("is a link that leads to nothing", str(path), _FIX) from None
         raise MissingError("no such file", str(path), "check the path") from None

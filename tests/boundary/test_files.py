@@ -3,6 +3,7 @@
 import io
 import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -70,6 +71,21 @@ def test_a_link_that_leads_to_nothing_is_not_missing(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="leads to nothing") as caught:
         files.read_file(tmp_path / "link", 10)
     assert not isinstance(caught.value, files.MissingError)
+
+
+def test_a_file_that_is_written_the_moment_it_is_looked_for_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was taken for a link that leads to nothing, and put into quarantine."""
+    path, look = tmp_path / "file", os.open
+
+    def too_early(*args: Any) -> int:
+        monkeypatch.setattr(os, "open", look)
+        path.write_bytes(b"here")
+        raise FileNotFoundError
+
+    monkeypatch.setattr(os, "open", too_early)
+    assert files.read_file(path, 10) == b"here"
 
 
 def test_absent_is_only_what_the_system_says_is_not_there(tmp_path: Path) -> None:

@@ -187,21 +187,17 @@ LEFT_RAD = {1: np.radians(5.0), 2: np.radians(4.5), 3: np.radians(4.0)}
 
 
 @pytest.mark.parametrize("n_cameras", [1, 2, 3])
-def test_a_known_shift_of_the_pose_is_recovered(n_cameras: int) -> None:
+@pytest.mark.parametrize("seed", range(3))
+def test_a_known_shift_of_the_pose_is_recovered(n_cameras: int, seed: int) -> None:
     by, truth = fitter(n_cameras), standing()
-    views, left_rad = views_of(by, truth), []
-    for seed in range(3):
-        start = beside(by, truth, seed)
-        before_m, before_rad = errors(by, start, truth)
-        fit = fitted(by, start, views)
-        after_m, after_rad = errors(by, fit.state, truth)
-        assert before_m > 0.03
-        assert after_m < min(LEFT_M[n_cameras], 0.7 * before_m)
-        assert after_rad < (before_rad if n_cameras == 1 else min(LEFT_RAD[n_cameras], before_rad))
-        assert fit.matched.sum() > 0.88 * fit.visible.sum()
-        left_rad.append(after_rad)
-    # one camera: which bones of a start are turned how far decides what is left of a single one
-    assert np.mean(left_rad) < LEFT_RAD[n_cameras]
+    views, start = views_of(by, truth), beside(by, truth, seed)
+    before_m, before_rad = errors(by, start, truth)
+    fit = fitted(by, start, views)
+    after_m, after_rad = errors(by, fit.state, truth)
+    assert before_m > 0.03
+    assert after_m < min(LEFT_M[n_cameras], 0.7 * before_m)
+    assert after_rad < min(LEFT_RAD[n_cameras], before_rad)
+    assert fit.matched.sum() > 0.88 * fit.visible.sum()
 
 
 def test_the_cost_falls() -> None:
