@@ -3,7 +3,7 @@
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.hypotheses.base import HypothesisContext, PoseHypothesis, ScoredFit
-from mocapd.tracking.hypotheses.hull_ends import HullEnds
+from mocapd.tracking.hypotheses.hull_poses import HullEnds
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 from mocapd.tracking.hypotheses.limb_poses import ArmPoses, LegPoses
 

@@ -9,7 +9,7 @@ from mocapd.fit.terms.planted_term import PlantedParams
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
 from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
-from mocapd.tracking.hypotheses.hull_ends import ReachingParams
+from mocapd.tracking.hypotheses.hull_poses import ReachingParams
 from mocapd.tracking.hypotheses.keypoint_starts import KeypointPoseParams
 from mocapd.tracking.planted_feet import PlantedFeetParams
 from mocapd.tracking.velocity import VelocityParams
