@@ -46,6 +46,7 @@ class _SearchCandidate:
 
 
 _Likely = tuple[Fit, _SearchCandidate]
+_TURNS = 2  # of a first pose by keypoints: about, and the rest of the way
 
 
 class AttemptSchedule:
@@ -281,8 +282,8 @@ class PersonSearch:
         return float(np.linalg.norm(fit.state.root_m - root_m)), seconds(t_ns - then_ns)
 
     def _as_person(self, fit: Fit, candidate: _SearchCandidate) -> Fit | None:
-        """The fit, turned about if keypoints say so: silhouettes of cameras all around hardly tell front from back. None if
-        the heatmaps of all pictures that show enough keypoints are as blurred as for furniture."""
+        """The fit, turned if keypoints say so: silhouettes of cameras all around hardly tell front from back. None if the
+        heatmaps of all pictures that show enough keypoints are as blurred as for furniture."""
         p, fitter = self._params, self._silhouettes
         detect = self._joints.detector(fitter, fit.state, self._views)
         terms = self._joints.term(fitter.model, map(detect, candidate.person.blobs))
@@ -292,14 +293,19 @@ class PersonSearch:
             return fit
         if min(finite_m) > p.spread_m:
             return None
-        turn_rad = terms[0].turn_rad(fitter.joints(fit.state)[0])
-        if abs(turn_rad) < p.turned_rad:
-            return fit
-        turned = turned_about_vertical(fit.state, turn_rad)
-        other = fit_to_blobs(
-            fitter, candidate.views, turned, p.iterations, (self._floor, *terms), p
-        )
-        return other if other.explained > fit.explained - p.turned_less else fit
+        for _ in range(_TURNS):
+            turn_rad = terms[0].turn_rad(fitter.joints(fit.state)[0])
+            if abs(turn_rad) < p.turned_rad:
+                break
+            turned = turned_about_vertical(fit.state, turn_rad)
+            other = fit_to_blobs(
+                fitter, candidate.views, turned, p.iterations, (self._floor, *terms), p
+            )
+            less = p.turned_less if abs(turn_rad) >= p.turned_about_rad else 0.0
+            if other.explained <= fit.explained - less:
+                break
+            fit = other
+        return fit
 
     def _names(self, candidate: _SearchCandidate) -> tuple[str, ...]:
         return tuple(self._views.each[i].name for i in candidate.person.blobs)

@@ -16,6 +16,7 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
+from mocapd.tracking.initialisers import person_search
 from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.types import Floats
 from mocapd.vision.foreground_kernels import BEFORE
@@ -97,6 +98,21 @@ def test_the_first_pose_faces_as_keypoints_do(yaw_rad: float) -> None:
         assert found is not None
         off_rad = np.angle(np.exp(1j * (facing_rad(FITTER.joints(found)[0]) - seen)))
         assert abs(off_rad) < 1.2
+
+
+@pytest.mark.parametrize(("explained", "is_turned"), [(0.76, True), (0.68, False)])
+def test_a_first_pose_that_faces_beside_its_keypoints_is_turned_if_that_agrees_better(
+    monkeypatch: pytest.MonkeyPatch, explained: float, is_turned: bool
+) -> None:
+    """Somebody was found 20 degrees askew, with too little agreement to be believed, for two seconds."""
+    state = turned(0.7)
+    search = search_among([state], Keypoints(0.7 + 0.35))
+    fit: Any = SimpleNamespace(state=state, explained=0.70)
+    better: Any = SimpleNamespace(state=turned(0.7 + 0.35), explained=explained)
+    monkeypatch.setattr(person_search, "fit_to_blobs", lambda *_: better)
+    candidate: Any = SimpleNamespace(views=(), person=SimpleNamespace(blobs=range(4)))
+    found = search._as_person(fit, candidate)
+    assert found is (better if is_turned else fit)
 
 
 def test_who_was_tracked_a_moment_ago_is_not_taken_for_somebody_else() -> None:

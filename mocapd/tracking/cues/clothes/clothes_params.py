@@ -43,10 +43,11 @@ class StartParams:
     )
     elsewhere_per_m: float = 0.3  # likewise, away from where somebody was tracked a moment ago
     people: int = 2  # candidates that are fitted; the best one is taken
-    turned_rad: float = (
-        1.6  # between the facing of fit and keypoints, above which the body is turned about,
-    )
-    turned_less: float = 0.15  # unless silhouette and body then agree by so much less
+    # between the facing of fit and keypoints, above which the body is turned and fitted with keypoints, too, where silhouette
+    # and body then agree better; and above which it is turned about unless they agree by so much less
+    turned_rad: float = 0.25
+    turned_about_rad: float = 1.6
+    turned_less: float = 0.15
     longest_s: float = 0.5  # of a search in one frame set, before it continues in the next
     walked_m: float = 1.0  # by the person during the search, at most
     walks_m_s: float = (
