@@ -1,6 +1,6 @@
 """Measure where the trained network marks each joint, in its bone's own frame: `MARKS` of vision/heatmaps/joint_network.py.
 
-python -m lab.training.keypoint_marks CLIPS --pictures 4000
+python -m lab.training.keypoint_marks CLIPS --pictures 6000
 
 The network learned the joints of people whose flesh lay otherwise about them, and means of maps fall short of the ends of
 limbs. Random people are drawn; the offset that explains what is off in all pictures is found by robust least squares (each
@@ -15,13 +15,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from lab.simulated.motion_clip import read_clip
-from lab.simulated.recorded_set import SCENES
 from lab.training.random_scenes import random_scene
-from lab.training.training_pictures import PICTURE_PX, Example, examples_of
+from lab.training.training_pictures import PICTURE_PX, Example, clips_and_scenes, examples_of
 from lab.training.training_pictures import SIDE_M as PICTURE_M
-from mocapd.assets import asset_path
-from mocapd.sim.scenario import load_scenario
+from mocapd.body.bones import NAMES
+from mocapd.body.skeleton import INDEX, OTHER_SIDE
 from mocapd.types import Floats
 from mocapd.vision.heatmaps.joint_network import (
     CELLS,
@@ -63,18 +61,9 @@ def marks(off_m: Floats, spread_m: Floats, turns: Floats) -> Floats:
         A = np.einsum("nj,njab,njac->jbc", weight, rows, rows)
         b = np.einsum("nj,njab,nja->jb", weight, rows, off_m)
         found = np.linalg.solve(A, b[..., None])[..., 0]
-    out = np.empty_like(found)
-    for j, name in enumerate(JOINTS):
-        other = JOINTS.index(_other_side(name))
-        out[j] = 0.5 * (found[j] + found[other] * [-1.0, 1.0, 1.0])
-    return out / STATURE_M
-
-
-def _other_side(name: str) -> str:
-    for side, other in (("left", "right"), ("right", "left")):
-        if name.startswith(side):
-            return other + name.removeprefix(side)
-    return name
+    other = [JOINTS.index(NAMES[OTHER_SIDE[INDEX[name]]]) for name in JOINTS]
+    symmetric: Floats = 0.5 * (found + found[other] * [-1.0, 1.0, 1.0])
+    return symmetric / STATURE_M
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -83,12 +72,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("clips", type=Path, help="a folder of clips of motion")
-    parser.add_argument("--pictures", type=int, default=4000)
+    parser.add_argument("--pictures", type=int, default=6000)
     parser.add_argument("--seed", type=int, default=7)
     args = parser.parse_args(argv)
     cv2.setNumThreads(1)
-    clips = [read_clip(path) for path in sorted(args.clips.glob("cmu*.npz"))]
-    scenes = [load_scenario(asset_path("scenarios") / f"{name}.toml") for name in SCENES]
+    clips, scenes = clips_and_scenes(args.clips)
     rng, network = np.random.default_rng(args.seed), JointNetwork()
     off_m, spread_m, turns = list[Floats](), list[Floats](), list[Floats]()
     while len(off_m) < args.pictures:

@@ -56,6 +56,12 @@ class Example:
     turns: Floats
 
 
+def clips_and_scenes(folder: Path) -> tuple[list[MotionClip], list[Scenario]]:
+    """What people do, of this folder of clips, and where."""
+    clips = [read_clip(path) for path in sorted(folder.glob("cmu*.npz"))]
+    return clips, [load_scenario(asset_path("scenarios") / f"{name}.toml") for name in SCENES]
+
+
 def examples_of(
     rng: np.random.Generator, scene: Scenario, clips: Sequence[MotionClip]
 ) -> list[Example]:
@@ -172,8 +178,7 @@ def main() -> int:
     parser.add_argument("--scenes", type=int, default=_SCENES_A_FILE, help="in each file")
     args = parser.parse_args()
     cv2.setNumThreads(1)
-    clips = [read_clip(path) for path in sorted(args.clips.glob("cmu*.npz"))]
-    scenes = [load_scenario(asset_path("scenarios") / f"{name}.toml") for name in SCENES]
+    clips, scenes = clips_and_scenes(args.clips)
     args.out.mkdir(parents=True, exist_ok=True)
     rng = np.random.default_rng(args.seed)
     until_s, number = time.monotonic() + 60.0 * args.minutes, 0

@@ -1,16 +1,14 @@
 """Starts from a recent body of another tracker, at its place."""
 
 from mocapd.body.model import BodyModel
-from mocapd.body.pose_space import SIDES
-from mocapd.body.skeleton import INDEX, local_from_global
+from mocapd.body.skeleton import local_from_global
 from mocapd.clock import nanoseconds
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
+from mocapd.tracking.cues.clothes.first_legs import LEGS
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue
 from mocapd.tracking.initialisers.base import InitialPose
 from mocapd.tracking.track_state import BodyShapeEstimate, resting_state
 from mocapd.types import BodyState, FrameSet, Skeleton
-
-_LEGS = [INDEX[side + bone] for side in SIDES for bone in ("LowerLeg", "Foot")]
 
 
 class HandedOverBody:
@@ -59,7 +57,7 @@ class HandedOverBody:
         if self._shirt is not None:
             trunk = self._shirt.start_from(start, wearer.taught_s, present, frame_index)
         # legs that nobody saw teach no look: below the shirt they are found as anybody's first ones
-        saw_legs = bool(body.confidence[_LEGS].any())
+        saw_legs = bool(body.confidence[LEGS].any())
         if self._clothes is not None and (saw_legs if trunk is not None else self._clothes.alone):
             whole = self._clothes.start_from(start, frames)
         return None if trunk is None and whole is None else InitialPose(start, trunk, whole)

@@ -17,7 +17,7 @@ from mocapd.tracking.ticks import Ticks
 from mocapd.types import Floats
 
 _CAMERAS = 2  # that are sure of knees and ankles, where there are so many
-_LEGS = [INDEX[side + bone] for side in SIDES for bone in ("LowerLeg", "Foot")]
+LEGS = [INDEX[side + bone] for side in SIDES for bone in ("LowerLeg", "Foot")]
 
 
 class FirstLegs:
@@ -102,7 +102,7 @@ class FirstLegs:
             if not found:
                 return None
             joints = found[0]
-            if joints.cameras_sure_of(_LEGS, self._params.first_spread_m).min() < self._enough:
+            if joints.cameras_sure_of(LEGS, self._params.first_spread_m).min() < self._enough:
                 return None
             held = (self._terms.floor, joints.trusting)
             pose = fitter.fit(start, (), dt_s, p.iterations, motion=trunk_prior, terms=held).state
