@@ -1,7 +1,5 @@
-"""The system of one Gauss-Newton step: the terms' normal equations, held by the priors of motion, rest, uprightness, joint
-limits and proportions. One call, as a frame has dozens of steps; each prior is a kernel of its own in `terms/`.
-
-numpy solves it: numba takes four seconds to compile a solver."""
+"""One Gauss-Newton step: the terms' normal equations, held by the priors of motion, rest, uprightness, joint limits and
+proportions, and solved. One call, as a frame has dozens of steps; each prior is a kernel of its own in `terms/`."""
 
 from typing import NamedTuple
 
@@ -11,6 +9,7 @@ from numpy.typing import NDArray
 
 from mocapd.body.joint_limit_kernels import JointLimits
 from mocapd.body.posing_kernels import difference
+from mocapd.fit.positive_inverse_kernels import solve_positive
 from mocapd.fit.priors.held_pose_kernels import pull_back
 from mocapd.fit.priors.joint_limit_term_kernels import keep_in_limits
 from mocapd.fit.priors.tilt_kernels import set_upright
@@ -30,7 +29,7 @@ class PosePriors(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def gauss_newton_system(
+def gauss_newton_step(
     H: Array,
     b: Array,
     root: Array,
@@ -41,8 +40,8 @@ def gauss_newton_system(
     priors: PosePriors,
     shape_offset: Array,
     shape_information: Array,
-) -> tuple[Array, Array]:
-    """The normal equations of all terms at the pose root (3,), local (J,4): a matrix (P,P) and a right side (P,).
+) -> Array:
+    """The step (P,) that the normal equations of all terms lead to from the pose root (3,), local (J,4).
 
     H (P,P), b (P,) of the evidence, left as they are; of the P unknowns the first are the pose's.
     motion_information (n_pose,n_pose) holds the pose to start_root, start_local; shape_offset:
@@ -68,4 +67,5 @@ def gauss_newton_system(
         for j in range(P - n_pose):
             A[n_pose + i, n_pose + j] += shape_information[i, j]
             g[n_pose + i] += shape_information[i, j] * shape_offset[j]
-    return A, g
+    solve_positive(A, g)
+    return g

@@ -1,7 +1,7 @@
 """Fit pose and body shape to the classified pictures of all cameras at once, by Gauss-Newton.
 
 Every iteration sums the terms of one body: the id maps of all cameras, each at its own instant, collisions of the arms with
-the trunk, and the caller's terms. `solve_kernels` adds the priors and solves the small system.
+the trunk, and the caller's terms. `solve_kernels` adds the priors and takes the step.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ from mocapd.fit.fit_result import Fit
 from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.motion_state import MotionState, apply_step
 from mocapd.fit.priors.pose_prior import small_baseline_prior, wide_baseline_prior
-from mocapd.fit.solve_kernels import gauss_newton_system
+from mocapd.fit.solve_kernels import gauss_newton_step
 from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.fit.terms.collision_term import CollisionTerm
 from mocapd.fit.terms.depth_agreement import compared_depths
@@ -115,11 +115,10 @@ class Fitter:
                 added = term.add(posed, body, held, pull)
                 cost += added
                 measured += added if term.is_measured else 0.0
-            A, g = gauss_newton_system(
+            step = gauss_newton_step(
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
                 motion, priors, prediction.factors - state.factors, shape_information,
             )  # fmt: skip
-            step = np.asarray(np.linalg.solve(A, g), dtype=np.float64)
             root_m, local_xyzw = apply_step(m, state.root_m, state.local_xyzw, step[:n_pose])
             factors = (
                 np.clip(state.factors + step[n_pose:], *_FACTORS) if n_shape else state.factors

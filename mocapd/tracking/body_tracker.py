@@ -133,7 +133,9 @@ class BodyTracker:
         state, estimates = self._recent_state(frames.t_ns), CueEstimates()
         if present:
             if state is not None:
-                state, estimates = self._track(state.with_shape(wearer), wearer, present, frames)
+                state, estimates = self._track(
+                    state.with_shape(wearer), wearer, present, frames.t_ns
+                )
             else:
                 state, estimates = self._initialise(wearer, present, frames)
         is_observed = state is not None and state.t_ns == frames.t_ns
@@ -197,10 +199,10 @@ class BodyTracker:
         state: TrackState,
         wearer: BodyShapeEstimate,
         present: dict[int, float],
-        frames: FrameSet,
+        t_ns: int,
     ) -> tuple[TrackState, CueEstimates]:
         """The state after this frame set. Without evidence it is the old state, with its old time."""
-        t_ns, clothes, locator = frames.t_ns, self._clothes, self._locator
+        clothes, locator = self._clothes, self._locator
         dt_s = max(seconds(t_ns - state.t_ns), 1e-3)
         predicted = predict_state(self._model, state.motion, dt_s, self.params.damping)
         observed = trunk = whole = separate = None
@@ -214,7 +216,7 @@ class BodyTracker:
                 wearer,
                 dt_s,
                 present,
-                frames,
+                t_ns,
                 self._ticks.now.frame_index,
                 self._shirt_trust.trusted,
                 self.probe,
@@ -227,17 +229,17 @@ class BodyTracker:
             separate = locator.separate_track
         if trunk is not None and locator is not None and self._shirt_carries(state, t_ns):
             if separate is None:
-                return self._solve_by_shirt(state, predicted, trunk, observed, dt_s, frames)
+                return self._solve_by_shirt(state, predicted, trunk, observed, dt_s, t_ns)
             locator.reset()
-            return self._solve_by_shirt(separate, separate.motion, trunk, None, dt_s, frames)
+            return self._solve_by_shirt(separate, separate.motion, trunk, None, dt_s, t_ns)
         if clothes is not None and clothes.alone and clothes.legs_rest:
             observed = clothes.observe(predicted, t_ns, state.legs_since_ns, False)
         if clothes is not None and clothes.alone and observed is not None:
-            whole = clothes.fit_whole_body(state, observed, dt_s, frames, self.probe)
+            whole = clothes.fit_whole_body(state, observed, dt_s, self.probe)
         self._update_clothes_trust(whole, t_ns, len(present))
         trunk = None if separate is not None else trunk
         if whole is None and trunk is not None:
-            return self._solve_by_shirt(state, predicted, trunk, observed, dt_s, frames)
+            return self._solve_by_shirt(state, predicted, trunk, observed, dt_s, t_ns)
         if whole is None:
             return state, CueEstimates()
         since_ns = t_ns if state.legs_since_ns is None else state.legs_since_ns
@@ -266,14 +268,14 @@ class BodyTracker:
         trunk: ShirtEstimate,
         observed: ClothesObservation | None,
         dt_s: float,
-        frames: FrameSet,
+        t_ns: int,
     ) -> tuple[TrackState, CueEstimates]:
         """Combines trunk and arms of the shirt with legs and head of the clothes."""
         assert self._shirt is not None
-        t_ns, clothes = frames.t_ns, self._clothes
+        clothes = self._clothes
         start, lower = replace_upper_body(predicted, trunk.motion), None
         if clothes is not None:
-            lower = clothes.fit_lower_body(state, start, observed, dt_s, frames, self.probe)
+            lower = clothes.fit_lower_body(state, start, observed, dt_s, self.probe)
             self._update_clothes_trust(lower, t_ns, len(clothes.cameras.present))
         names, changed = self._shirt.names(trunk.views), tuple(f"{s}_arm" for s in trunk.jumped)
         if lower is None:
@@ -301,19 +303,19 @@ class BodyTracker:
             pose = initialiser.find(wearer, present, frames, self._ticks.now.frame_index)
             self.probe(initialiser.name)
             if pose is not None:
-                return self._start_track(pose, frames)
+                return self._start_track(pose, frames.t_ns)
             if had_handover and initialiser is self._handed_over:
                 self._tracking.reset()
         return None, CueEstimates()
 
-    def _start_track(self, pose: InitialPose, frames: FrameSet) -> tuple[TrackState, CueEstimates]:
-        t_ns = self._track_start_ns = frames.t_ns
+    def _start_track(self, pose: InitialPose, t_ns: int) -> tuple[TrackState, CueEstimates]:
+        self._track_start_ns = t_ns
         state, whole = TrackState(t_ns, pose.body, ()), pose.whole
         if whole is not None:
             state = TrackState(t_ns, whole.motion, whole.cameras, None, whole.fit, t_ns, t_ns)
         if pose.trunk is None:
             return state, CueEstimates(None, whole)
-        return self._solve_by_shirt(state, state.motion, pose.trunk, None, 1e-3, frames)
+        return self._solve_by_shirt(state, state.motion, pose.trunk, None, 1e-3, t_ns)
 
     def _is_too_young(self, state: TrackState | None, t_ns: int) -> bool:
         """True for a new clothes-only track younger than `arrive_s`: the shirt may give a better pose a moment later."""

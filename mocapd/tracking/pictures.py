@@ -1,4 +1,4 @@
-"""Downscaled pictures of a frame set, computed once and shared by all cues."""
+"""Pictures of a frame set, downscaled and in grey: each is computed once, for all cues."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -15,25 +15,36 @@ from mocapd.vision.frame_size import check_frame_size
 
 @dataclass(slots=True, eq=False)
 class CameraPicture:
-    """The newest picture of one camera, bgr (h,w,3), downscaled by image_scale; both sides are even."""
+    """The newest picture of one camera, bgr (h,w,3), downscaled by image_scale; both sides are even. delivered: as it is."""
 
     camera: Camera
     image_scale: int
     bgr: Bytes = field(init=False)
+    delivered: Bytes = field(init=False)
+    _grey: Bytes | None = field(init=False, default=None)
 
     def __post_init__(self) -> None:
         w, h = work_size(self.camera, self.image_scale)
         self.bgr = np.zeros((h, w, 3), np.uint8)
+        self.delivered = np.zeros((*self.camera.size_px[::-1], 3), np.uint8)
 
     def take(self, pixels: Bytes) -> None:
         """Stores a frame's pixels, averaged over blocks."""
         h, w = self.bgr.shape[:2]
         k = self.image_scale
+        self.delivered, self._grey = pixels, None
         cv2.resize(pixels[: h * k, : w * k], (w, h), dst=self.bgr, interpolation=cv2.INTER_AREA)
+
+    @property
+    def grey(self) -> Bytes:
+        """The delivered picture in grey (h,w)."""
+        if self._grey is None:
+            self._grey = np.asarray(cv2.cvtColor(self.delivered, cv2.COLOR_BGR2GRAY), np.uint8)
+        return self._grey
 
 
 class Pictures:
-    """A downscaled picture for each camera of a rig.
+    """The newest picture of each camera of a rig.
 
     t_ns: time of the frame set; present: each present camera's time offset from it [s], by index.
     """
@@ -44,6 +55,10 @@ class Pictures:
         self.t_ns, self.present = 0, dict[int, float]()
         self._index = {camera.name: i for i, camera in enumerate(cameras)}
         self._each = each
+
+    def grey(self, index: int) -> Bytes:
+        """A camera's picture as delivered, in grey (h,w)."""
+        return self.each[index].grey
 
     def load(self, frames: FrameSet) -> dict[int, float]:
         """Loads a frame set and returns `present`. Raises ConfigError when a frame's size is not its calibration's."""

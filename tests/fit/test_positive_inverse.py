@@ -1,4 +1,4 @@
-"""The inverse of a symmetric positive definite matrix: as numpy's, and symmetric to the last bit."""
+"""The inverse of a symmetric positive definite matrix, symmetric to the last bit, and its linear systems: as numpy's."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mocapd.fit.positive_inverse import positive_inverse
+from mocapd.fit.positive_inverse_kernels import solve_positive
 
 
 @given(st.integers(1, 40), st.integers(0, 2**32 - 1))
@@ -27,3 +28,19 @@ def test_what_is_just_not_positive_is_inverted_all_the_same() -> None:
 def test_a_singular_matrix_is_an_error() -> None:
     with pytest.raises(np.linalg.LinAlgError):
         positive_inverse(np.zeros((3, 3)))
+
+
+@given(st.integers(1, 60), st.integers(0, 2**32 - 1))
+def test_a_system_is_solved(size: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    factors, wanted = rng.normal(0.0, 1.0, (size + 5, size)), rng.normal(0.0, 1.0, size)
+    matrix = factors.T @ factors + 0.1 * np.eye(size)
+    solved = matrix @ wanted
+    solve_positive(np.tril(matrix), solved)
+    np.testing.assert_allclose(solved, wanted, atol=1e-9)
+
+
+def test_an_unknown_that_nothing_says_anything_of_stays_where_it_is() -> None:
+    solved = np.array([2.0, 0.0, 6.0])
+    solve_positive(np.diag([1.0, 0.0, 2.0]), solved)
+    np.testing.assert_array_equal(solved, [2.0, 0.0, 3.0])

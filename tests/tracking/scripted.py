@@ -227,7 +227,7 @@ class ScriptedClothes(_Scripted):
     def search(self, _: BodyShapeEstimate, _t_ns: int) -> ClothesEstimate | None:
         return self._as_clothes(self.found_near(None))
 
-    def start_from(self, there: MotionState, _: FrameSet) -> ClothesEstimate | None:
+    def start_from(self, there: MotionState) -> ClothesEstimate | None:
         return self._as_clothes(self.found_near(there))
 
     def lost_reason(self, _: int) -> LostReason | None:

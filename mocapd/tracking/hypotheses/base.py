@@ -11,7 +11,7 @@ from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.tracking.cues.clothes.region_merge import RegionSolvers
 from mocapd.tracking.ticks import Ticks
-from mocapd.types import Floats, FrameSet
+from mocapd.types import Floats
 
 WHOLE = "whole"  # as a part that changed: all of the body
 
@@ -34,7 +34,6 @@ class HypothesisContext:
 
     solvers: RegionSolvers
     dt_s: float
-    frames: FrameSet
     ticks: Ticks
     joints: Sequence[JointTerm]
     evidence: PoseEvidence

@@ -59,5 +59,5 @@ class HandedOverBody:
         # legs that nobody saw teach no look: below the shirt they are found as anybody's first ones
         saw_legs = bool(body.confidence[LEGS].any())
         if self._clothes is not None and (saw_legs if trunk is not None else self._clothes.alone):
-            whole = self._clothes.start_from(start, frames)
+            whole = self._clothes.start_from(start)
         return None if trunk is None and whole is None else InitialPose(start, trunk, whole)

@@ -25,7 +25,7 @@ from mocapd.tracking.hypotheses.keypoint_starts import (
     legs_exchanged,
 )
 from mocapd.tracking.ticks import Ticks
-from mocapd.types import Floats, FrameSet, Ints
+from mocapd.types import Floats, Ints
 from tests.tracking.hypotheses.standing_body import BODY, FITTER, drawn, standing
 
 pytestmark = pytest.mark.kernels
@@ -71,7 +71,7 @@ def situation(joints: JointTerm, evidence: PoseEvidence) -> HypothesisContext:
     solvers = RegionSolvers(
         FITTER, ArmSearch(FITTER, LimbSearchParams()), LegSearch(FITTER, LegSearchParams())
     )
-    return HypothesisContext(solvers, DT_S, FrameSet(0, {}, 0), Ticks(1, 1, 1), (joints,), evidence)
+    return HypothesisContext(solvers, DT_S, Ticks(1, 1, 1), (joints,), evidence)
 
 
 def nobody(state: MotionState) -> list[View]:

@@ -89,7 +89,7 @@ class ClothesCue:
 
     def take(self, pictures: Pictures, ticks: Ticks, /) -> None:
         """See Cue."""
-        self._ticks, self.legs_rest = ticks, False
+        self._pictures, self._ticks, self.legs_rest = pictures, ticks, False
         self._search.times.on_frame_set(pictures.t_ns)
         self.cameras.take({i: pictures.each[i].bgr for i in pictures.present}, pictures.present)
 
@@ -173,15 +173,14 @@ class ClothesCue:
         state: TrackState,
         observed: ClothesObservation,
         dt_s: float,
-        frames: FrameSet,
         probe: Probe,
     ) -> ClothesEstimate | None:
         """Fits the whole body, dt_s after `state`; None if too little of it is visible."""
         found = self._solver.fit_whole_body(
-            state, observed, dt_s, frames, self._ticks, self._measures_depths, probe
+            state, observed, dt_s, self._pictures, self._ticks, self._measures_depths, probe
         )
         if found is not None:
-            self._search.on_body(found.motion.root_m, frames.t_ns)
+            self._search.on_body(found.motion.root_m, self._pictures.t_ns)
         return found
 
     def fit_lower_body(
@@ -190,7 +189,6 @@ class ClothesCue:
         start: MotionState,
         observed: ClothesObservation | None,
         dt_s: float,
-        frames: FrameSet,
         probe: Probe,
     ) -> ClothesEstimate | None:
         """Fits legs and head of a body whose trunk and arms, in `start`, come from the shirt; dt_s after `state`."""
@@ -198,9 +196,11 @@ class ClothesCue:
         if self.legs_rest and state.whole is not None:
             return ClothesEstimate(state.whole, start, (), ())
         ticks = replace(self._ticks, frame_index=self._legs.turn(self._ticks.frame_index))
-        found = self._solver.fit_lower_body(state, start, observed, dt_s, frames, ticks, probe)
+        found = self._solver.fit_lower_body(
+            state, start, observed, dt_s, self._pictures, ticks, probe
+        )
         if found is not None:
-            self._search.on_body(found.motion.root_m, frames.t_ns)
+            self._search.on_body(found.motion.root_m, self._pictures.t_ns)
             joints_m, _ = self.fitter.joints(found.motion)
             crossing = not self.fitter.has_small_baseline(found.motion, found.views)
             self._legs.on_fit(joints_m, self._ticks.last, crossing)
@@ -225,9 +225,9 @@ class ClothesCue:
         self._solver.appearance.learn_first(fit.state, self.cameras)
         return ClothesEstimate(fit, fit.state, (), names)
 
-    def start_from(self, body: MotionState, frames: FrameSet) -> ClothesEstimate | None:
+    def start_from(self, body: MotionState) -> ClothesEstimate | None:
         """Starts from a body of another tracker, if the pictures show its outline."""
-        return self._solver.start_from(body, frames, self._ticks)
+        return self._solver.start_from(body, self._pictures, self._ticks)
 
     def lost_reason(self, t_ns: int) -> LostReason | None:
         """Why no person is tracked, if known."""

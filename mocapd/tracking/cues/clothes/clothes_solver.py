@@ -33,6 +33,7 @@ from mocapd.tracking.cues.stereo.depth_views import add_stereo_depth
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.hypotheses.base import WHOLE, HypothesisContext, PoseEvidence, ScoredFit
 from mocapd.tracking.hypotheses.hypothesis_tests import HypothesisTests
+from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.planted_feet import PlantedFeet
 from mocapd.tracking.prediction_prior import prediction_prior
 from mocapd.tracking.ticks import Ticks
@@ -43,7 +44,7 @@ from mocapd.tracking.track_state import (
     t_pose_state,
 )
 from mocapd.tracking.velocity import velocity_between
-from mocapd.types import Floats, Frame, FrameSet, Rig
+from mocapd.types import Floats, Rig
 
 # their stereo distances are measured below a trunk that the shirt places
 _LOWER_REGIONS = (Region.LEG, Region.FOOT)
@@ -121,11 +122,7 @@ class ClothesSolver:
         model, cameras = self.model, self.cameras
         wearer = BodyShapeEstimate(np.ones(model.n_shape), initial_information(model.space), 0.0)
         body = t_pose_state(model, model.rest_m[0].copy(), wearer)
-        black = {
-            one.name: Frame(one.name, 0, 0, np.zeros((*one.size_px[::-1], 3), np.uint8))
-            for one in self._rig.cameras
-        }
-        frames = FrameSet(0, black, 0)
+        black = Pictures(self._rig.cameras, self.params.fit.work_width_px)
         cameras.take({}, dict.fromkeys(range(len(cameras.each)), 0.0))
         cameras.mark_body(body)
         cameras.seed_background()
@@ -135,7 +132,7 @@ class ClothesSolver:
         if not views:
             return  # nobody at the origin is in any picture
         fitter = self.fitter
-        views = add_stereo_depth(fitter, body, views, frames, self.params.depths)
+        views = add_stereo_depth(fitter, body, views, black.grey, self.params.depths)
         if fitter.has_small_baseline(body, views):  # black pictures have no depths
             unseen = np.full(views[0].ids.shape, np.nan, np.float32)
             views[0] = replace(views[0], depth_m=unseen)
@@ -143,7 +140,7 @@ class ClothesSolver:
         observed = joints.term(model, map(joints.detector(fitter, body, cameras), cameras.present))
         feet = np.array([INDEX["leftFoot"]])
         planted = PlantedTerm(model, feet, np.zeros((1, 2)), self.params.planted)
-        terms = (*self.terms.measure(fitter, body, views, frames, 0), *observed, planted)
+        terms = (*self.terms.measure(fitter, body, views, black.grey, 0), *observed, planted)
         fit = fitter.fit(body, views, TICK_S, 2, terms=terms)
         predicted_information(
             fit.covariance, body.velocity, 1.0, fitter.prediction_sd, [], self.params.motion
@@ -151,9 +148,7 @@ class ClothesSolver:
         cameras.learn(body, views)
         self._velocity(fit, views, body, TICK_S, ())
         evidence = PoseEvidence(cameras.classify, lambda _, __: terms)
-        at = HypothesisContext(
-            self.appearance.solvers, TICK_S, frames, Ticks(1, 1, 1), observed, evidence
-        )
+        at = HypothesisContext(self.appearance.solvers, TICK_S, Ticks(1, 1, 1), observed, evidence)
         self._hypotheses.rehearse(ScoredFit(fit, views, terms), at)
 
     def fit_whole_body(
@@ -161,7 +156,7 @@ class ClothesSolver:
         state: TrackState,
         observed: ClothesObservation,
         dt_s: float,
-        frames: FrameSet,
+        pictures: Pictures,
         ticks: Ticks,
         with_depth: bool,
         probe: Probe,
@@ -172,7 +167,7 @@ class ClothesSolver:
         if not views:
             return None
         if with_depth:
-            views = add_stereo_depth(fitter, predicted, views, frames, p.depths)
+            views = add_stereo_depth(fitter, predicted, views, pictures.grey, p.depths)
             probe("clothes.depths")
         motion = None
         if last is not None:
@@ -181,7 +176,7 @@ class ClothesSolver:
         planted = self._planted()
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
-            measured = self.terms.measure(fitter, drawn, shown, frames, ticks.frame_index)
+            measured = self.terms.measure(fitter, drawn, shown, pictures.grey, ticks.frame_index)
             return (*measured, *observed.joints, *planted)
 
         terms = terms_of(predicted, views)
@@ -192,13 +187,13 @@ class ClothesSolver:
         )  # fmt: skip
         probe("clothes.fit")
         at = HypothesisContext(
-            self.appearance.solvers, dt_s, frames, ticks, observed.joints,
+            self.appearance.solvers, dt_s, ticks, observed.joints,
             PoseEvidence(self.cameras.classify, terms_of),
         )  # fmt: skip
         best = self._hypotheses.improve(
             ScoredFit(fit, views, terms), at, self._tests_hypotheses(ticks), probe
         )
-        return self._estimate(best, state.motion, dt_s, frames.t_ns, observed.joints)
+        return self._estimate(best, state.motion, dt_s, pictures.t_ns, observed.joints)
 
     def fit_lower_body(
         self,
@@ -206,7 +201,7 @@ class ClothesSolver:
         start: MotionState,
         observed: ClothesObservation | None,
         dt_s: float,
-        frames: FrameSet,
+        pictures: Pictures,
         ticks: Ticks,
         probe: Probe,
     ) -> ClothesEstimate | None:
@@ -236,7 +231,7 @@ class ClothesSolver:
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
             measured = self.terms.measure(
-                fitter, drawn, shown, frames, ticks.frame_index, _LOWER_REGIONS
+                fitter, drawn, shown, pictures.grey, ticks.frame_index, _LOWER_REGIONS
             )
             return (*measured, *observed.joints, *planted)
 
@@ -248,16 +243,16 @@ class ClothesSolver:
         )  # fmt: skip
         probe("clothes.fit")
         at = HypothesisContext(
-            self.appearance.solvers, dt_s, frames, ticks, observed.joints,
+            self.appearance.solvers, dt_s, ticks, observed.joints,
             PoseEvidence(cameras.classify, terms_of), trunk_prior,
         )  # fmt: skip
         best = self._hypotheses.improve(
             ScoredFit(fit, observed.views, terms), at, self._tests_hypotheses(ticks), probe
         )
-        return self._estimate(best, last, dt_s, frames.t_ns, observed.joints)
+        return self._estimate(best, last, dt_s, pictures.t_ns, observed.joints)
 
     def start_from(
-        self, body: MotionState, frames: FrameSet, ticks: Ticks
+        self, body: MotionState, pictures: Pictures, ticks: Ticks
     ) -> ClothesEstimate | None:
         """Starts from a body of another tracker, if the pictures show its outline; the rest becomes background."""
         cameras = self.cameras
@@ -272,7 +267,7 @@ class ClothesSolver:
             return None
         fit = fitter.fit(
             body, views, NEW_BODY_PRIOR_S, self.params.fit.iterations,
-            terms=self.terms.measure(fitter, body, views, frames, ticks.frame_index),
+            terms=self.terms.measure(fitter, body, views, pictures.grey, ticks.frame_index),
         )  # fmt: skip
         return self._estimate(ScoredFit(fit, views, ()), None, NEW_BODY_PRIOR_S)
 

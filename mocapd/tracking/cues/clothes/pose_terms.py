@@ -10,8 +10,7 @@ from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
-from mocapd.tracking.cues.stereo.stereo_distances import stereo_distance_terms
-from mocapd.types import FrameSet
+from mocapd.tracking.cues.stereo.stereo_distances import GreyPicture, stereo_distance_terms
 
 
 class PoseTerms:
@@ -28,12 +27,12 @@ class PoseTerms:
         fitter: Fitter,
         drawn: MotionState,
         views: Sequence[View],
-        frames: FrameSet,
+        grey: GreyPicture,
         frame_index: int,
         only: Collection[int] = (),
     ) -> tuple[Term, ...]:
         """The floor, and distances of all regions or of these only, of a body that was drawn last into every view."""
         distances = stereo_distance_terms(
-            fitter, drawn, views, frames, frame_index, self._params, only
+            fitter, drawn, views, grey, frame_index, self._params, only
         )
         return (self.floor, *distances)

@@ -36,7 +36,7 @@ from mocapd.tracking.track_state import (
     upper_body_state,
 )
 from mocapd.tracking.velocity import velocity_between
-from mocapd.types import Bytes, Floats, FrameSet, Rig
+from mocapd.types import Bytes, Floats, Rig
 from mocapd.vision.room_background import RoomBackground
 
 _LONGEST_TICKS = 8  # after a pause no more is learned from a frame set than after so many
@@ -108,7 +108,7 @@ class ShirtCue:
 
     def take(self, pictures: Pictures, ticks: Ticks, /) -> None:
         """See Cue."""
-        self._ticks = ticks
+        self._pictures, self._ticks = pictures, ticks
         self.segmenters.take({i: pictures.each[i].bgr for i in pictures.present}, ticks.count)
 
     # --- with a body ---
@@ -119,7 +119,6 @@ class ShirtCue:
         predicted: MotionState,
         dt_s: float,
         present: dict[int, float],
-        frames: FrameSet,
         frame_index: int,
         probe: Probe,
     ) -> ShirtEstimate | None:
@@ -143,7 +142,9 @@ class ShirtCue:
         motion = prediction_prior(
             fitter, last, start.velocity, dt_s, last.confirmed_arms, p.limbs.uncertain_arm, p.motion
         )
-        terms = stereo_distance_terms(fitter, start, views, frames, frame_index, p.distances)
+        terms = stereo_distance_terms(
+            fitter, start, views, self._pictures.grey, frame_index, p.distances
+        )
         fit = fitter.fit(
             start, views, dt_s, p.fit.iterations - self.work.fewer_iterations, learning, rendered=True,
             fine=min(self.work.fine, p.fit.fine_iterations), motion=motion, terms=terms,

@@ -11,7 +11,6 @@ from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtEstimate
 from mocapd.tracking.track_state import BodyShapeEstimate, TrackState, t_pose_state
 from mocapd.tracking.trunk_and_legs import with_straight_legs
-from mocapd.types import FrameSet
 
 
 class ShirtLocator:
@@ -37,22 +36,22 @@ class ShirtLocator:
         wearer: BodyShapeEstimate,
         dt_s: float,
         present: dict[int, float],
-        frames: FrameSet,
+        t_ns: int,
         frame_index: int,
         is_trusted: bool,
         probe: Probe,
     ) -> ShirtEstimate | None:
         """Trunk and arms from the shirt; None if it is not found. predicted: the body, dt_s after `state`; is_trusted:
         the shirt was trusted a moment ago, so a failed fit is repeated at once."""
-        p, cue, t_ns = self._params, self._cue, frames.t_ns
+        p, cue = self._params, self._cue
         self.has_searched = True
         if state.trunk is not None:
-            found = cue.follow(state, predicted, dt_s, present, frames, frame_index, probe)
+            found = cue.follow(state, predicted, dt_s, present, frame_index, probe)
         elif self.separate_track is not None:
             separate = self.separate_track
             dt_s = max(seconds(t_ns - separate.t_ns), 1e-3)
             extrapolated = predict_state(self._whole, separate.motion, dt_s, self._damping)
-            found = cue.follow(separate, extrapolated, dt_s, present, frames, frame_index, probe)
+            found = cue.follow(separate, extrapolated, dt_s, present, frame_index, probe)
         elif t_ns < self._next_attempt_ns and not is_trusted:
             self.has_searched = False
             return None

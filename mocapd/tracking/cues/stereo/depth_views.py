@@ -10,8 +10,7 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.stereo_depth import StereoDepthParams, StereoPair, stereo_depth_m
 from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
-from mocapd.tracking.cues.stereo.stereo_distances import grey_pictures
-from mocapd.types import FrameSet
+from mocapd.tracking.cues.stereo.stereo_distances import GreyPicture
 
 _SURE = np.uint8(255)
 
@@ -20,7 +19,7 @@ def add_stereo_depth(
     fitter: Fitter,
     predicted: MotionState,
     views: Sequence[View],
-    frames: FrameSet,
+    grey: GreyPicture,
     params: StereoDepthParams,
 ) -> list[View]:
     """The views, with depths in the first one, for two cameras with a small baseline; unchanged otherwise.
@@ -30,7 +29,7 @@ def add_stereo_depth(
     """
     if len(views) != 2 or not fitter.has_small_baseline(predicted, views):
         return list(views)
-    greys = grey_pictures(fitter, views, frames)
+    greys = fitter.each(grey, [view.index for view in views])
     out = []
     for mine, its in ((0, 1), (1, 0)):
         view, drawing = views[mine], fitter.drawings[views[mine].index]

@@ -1,8 +1,7 @@
 """How far away the body is, where two cameras look from about the same side and see its cloth alike."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 
-import cv2
 import numpy as np
 
 from mocapd.fit.motion_state import MotionState
@@ -11,36 +10,28 @@ from mocapd.fit.terms.distance_term import DistanceTerm
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams, measured_distances
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
-from mocapd.types import Bytes, FrameSet
+from mocapd.types import Bytes
 
-
-def grey_pictures(fitter: Fitter, views: Sequence[View], frames: FrameSet) -> list[Bytes]:
-    """The pictures of these views in grey, as delivered."""
-
-    def grey(view: View) -> Bytes:
-        pixels = frames.frames[fitter.drawings[view.index].camera.name].pixels
-        return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), np.uint8)
-
-    return list(fitter.each(grey, views))
+GreyPicture = Callable[[int], Bytes]  # of the camera of an index, (h,w) as delivered
 
 
 def stereo_distance_terms(
     fitter: Fitter,
     predicted: MotionState,
     views: Sequence[View],
-    frames: FrameSet,
+    grey: GreyPicture,
     frame_index: int,
     params: StereoMatchParams,
     only: Collection[int] = (),
 ) -> tuple[Term, ...]:
     """Distances of the predicted body, which the fitter drew last into every view; none where cameras see other sides.
 
-    turn: a running number, by which other points are taken; only: ids of the body's, where not all are wanted.
+    frame_index: a running number, by which other points are taken; only: ids of the body's, where not all are wanted.
     """
     if len(views) != 2 or not fitter.has_small_baseline(predicted, views):
         return ()
     drawing, other = (fitter.drawings[view.index] for view in views)
-    first, second = grey_pictures(fitter, views, frames)
+    first, second = fitter.each(grey, [view.index for view in views])
     body, roi = fitter.shaper(predicted.factors), views[0].roi
     ids, triangles = drawing.last(roi)
     if only:

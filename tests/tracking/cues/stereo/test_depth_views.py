@@ -11,7 +11,8 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.stereo_depth import StereoDepthParams
 from mocapd.fit.view import View
 from mocapd.tracking.cues.stereo.depth_views import add_stereo_depth
-from mocapd.types import Camera, Frame, FrameSet
+from mocapd.tracking.cues.stereo.stereo_distances import GreyPicture
+from mocapd.types import Camera
 from tests.fit.synthetic import CAMERAS, FACTOR, LABELS, MODEL, standing, textured_greys
 from tests.geometry.rigs import looking_at
 
@@ -24,16 +25,13 @@ BESIDE = tuple(
 )
 
 
-def filmed(cameras: tuple[Camera, ...], *bodies: MotionState) -> FrameSet:
+def filmed(cameras: tuple[Camera, ...], *bodies: MotionState) -> GreyPicture:
     """Bodies with texture, the first one in front."""
     greys = textured_greys(MODEL, cameras, bodies[-1])
     for body in bodies[-2::-1]:
         nearer = textured_greys(MODEL, cameras, body)
         greys = [np.where(a != 90, a, b) for a, b in zip(nearer, greys, strict=True)]
-    named = zip(cameras, greys, strict=True)
-    return FrameSet(
-        0, {c.name: Frame(c.name, 0, 0, np.repeat(g[..., None], 3, axis=2)) for c, g in named}, 0
-    )
+    return list(greys).__getitem__
 
 
 def views(by: Fitter, state: MotionState, *others: MotionState) -> list[View]:

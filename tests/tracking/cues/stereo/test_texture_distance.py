@@ -8,8 +8,8 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.fit.view import View
-from mocapd.tracking.cues.stereo.stereo_distances import stereo_distance_terms
-from mocapd.types import Camera, Floats, Frame, FrameSet
+from mocapd.tracking.cues.stereo.stereo_distances import GreyPicture, stereo_distance_terms
+from mocapd.types import Camera, Floats
 from tests.fit.synthetic import CAMERAS, LABELS, MODEL, apply_step, standing, textured_greys
 from tests.geometry.rigs import looking_at
 
@@ -21,16 +21,9 @@ SIDE_BY_SIDE = tuple(
 )
 
 
-def textured(cameras: tuple[Camera, ...], state: MotionState) -> FrameSet:
+def textured(cameras: tuple[Camera, ...], state: MotionState) -> GreyPicture:
     """Pictures of a body whose brightness follows its surface."""
-    greys = textured_greys(MODEL, cameras, state)
-    return FrameSet(
-        0,
-        {
-            camera.name: Frame(camera.name, 0, 0, np.repeat(grey[..., None], 3, axis=2))
-            for camera, grey in zip(cameras, greys, strict=True)
-        },
-    )
+    return list(textured_greys(MODEL, cameras, state)).__getitem__
 
 
 def shifted(by: Fitter, state: MotionState, m: Floats) -> MotionState:
@@ -67,10 +60,10 @@ def test_a_pair_side_by_side_pulls_the_body_to_where_its_texture_is() -> None:
 def test_cameras_that_see_other_sides_and_one_alone_do_not_ask() -> None:
     truth = standing()
     crossing = Fitter(MODEL, LABELS, CAMERAS[:2], [2, 2], FitParams())
-    frames = textured(CAMERAS[:2], truth)
+    grey = textured(CAMERAS[:2], truth)
     views = drawn(crossing, truth)
-    assert stereo_distance_terms(crossing, truth, views, frames, 0, StereoMatchParams()) == ()
+    assert stereo_distance_terms(crossing, truth, views, grey, 0, StereoMatchParams()) == ()
     alone = Fitter(MODEL, LABELS, SIDE_BY_SIDE, [2, 2], FitParams())
     views = drawn(alone, truth)[:1]
-    frames = textured(SIDE_BY_SIDE, truth)
-    assert stereo_distance_terms(alone, truth, views, frames, 0, StereoMatchParams()) == ()
+    grey = textured(SIDE_BY_SIDE, truth)
+    assert stereo_distance_terms(alone, truth, views, grey, 0, StereoMatchParams()) == ()
