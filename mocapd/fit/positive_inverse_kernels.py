@@ -1,5 +1,5 @@
 """Kernels: a linear system and the inverse of a positive definite matrix. A pose has 48 parameters: for that few, numpy takes
-twice as long, and scipy's LAPACK takes a fifth of a second to import."""
+half as long again or longer, and scipy's LAPACK takes a fifth of a second to import."""
 
 import numpy as np
 from numba import njit

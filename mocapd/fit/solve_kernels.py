@@ -1,5 +1,5 @@
 """One Gauss-Newton step: the terms' normal equations, held by the priors of motion, rest, uprightness, joint limits and
-proportions, and solved. One call, as a frame has dozens of steps; each prior is a kernel of its own in `terms/`."""
+proportions, and solved. One call, as a frame has dozens of steps; each prior is a kernel of its own in `priors/`."""
 
 from typing import NamedTuple
 
