@@ -116,8 +116,10 @@ def _shown(picture: Tensor, room: Tensor, mask: Tensor) -> tuple[Tensor, Tensor]
     def normal(sd: float, *shape: int) -> Tensor:
         return sd * torch.randn(n, *(shape or (1, 1, 1)), device=at)
 
-    cloth = _cloth(n, at)
-    picture = torch.where(some(0.25), picture * (1.0 + mask * (cloth - 1.0)), picture)
+    striped = some(0.25).flatten()
+    cloth = _cloth(int(striped.sum()), at)
+    picture = picture.clone()
+    picture[striped] *= 1.0 + mask[striped] * (cloth - 1.0)
     ghost = picture.roll(1, 0) * mask.roll(1, 0) + room * (1.0 - mask.roll(1, 0))
     room = torch.where(some(0.05), ghost, room)
     patchy = F.interpolate(
@@ -128,10 +130,11 @@ def _shown(picture: Tensor, room: Tensor, mask: Tensor) -> tuple[Tensor, Tensor]
     gain = torch.exp(normal(0.25) + normal(0.1, 3, 1, 1))
     picture = (picture.clamp(1e-3, 1.0) ** torch.exp(normal(0.2)) * gain).clamp(0.0, 1.0)
     grey = picture.mean(1, keepdim=True)
-    tint = F.avg_pool2d(picture - grey, 3, 1, 1)  # webcams tell colours at half the size, or less
-    picture = torch.where(some(0.5), grey + tint, picture)
-    picture = torch.where(some(0.12), grey.expand(-1, 3, -1, -1), picture)
-    picture = torch.where(some(0.25), F.avg_pool2d(picture, 3, 1, 1), picture)
+    smeared = some(0.5).flatten()  # webcams tell colours at half the size, or less
+    picture[smeared] = grey[smeared] + _blurred((picture - grey)[smeared])
+    colourless, unsharp = some(0.12).flatten(), some(0.25).flatten()
+    picture[colourless] = grey[colourless].expand(-1, 3, -1, -1)
+    picture[unsharp] = _blurred(picture[unsharp])
     noise = 0.03 * torch.rand(n, 1, 1, 1, device=at)
     picture = picture + noise * torch.randn_like(picture)
     off = off + 0.06 * torch.rand(n, 1, 1, 1, device=at) * torch.randn_like(off)
@@ -147,6 +150,16 @@ def _shown(picture: Tensor, room: Tensor, mask: Tensor) -> tuple[Tensor, Tensor]
         mask = torch.where(hides, 0.0, mask)
     off = torch.where(some(0.1), 0.0, off)
     return torch.cat([picture - 0.5, off.clamp(0.0, 1.0)], 1), mask
+
+
+def _blurred(x: Tensor) -> Tensor:
+    """Means of 3x3 pixels, nothing being beyond the border."""
+    for axis in (2, 3):
+        after, before = x.roll(1, axis), x.roll(-1, axis)
+        after.select(axis, 0).zero_()
+        before.select(axis, -1).zero_()
+        x = (x + after + before) / 3.0
+    return x
 
 
 def _cloth(n: int, at: torch.device) -> Tensor:

@@ -18,15 +18,13 @@ JOINTS, TOES = (
     2,
 )  # in the order of mocapd.vision.heatmaps.joint_network.JOINTS, of which the last are toes
 INPUT_PX, CELLS = 96, 24
-WIDTHS, UP, RESIDUALS = (16, 24, 48, 80, 112), (48, 40, 32), (1, 2, 1)
+WIDTHS, UP, RESIDUALS = (24, 40, 80, 80, 112), (64, 48, 40), (1, 2, 1)
 _TOES_WIDTH, _MASK_WIDTH = 24, 16
 
 
 def convolved(i: int, o: int, stride: int = 1, size: int = 3) -> nn.Sequential:
-    """A convolution, normalised and rectified."""
-    return nn.Sequential(
-        nn.Conv2d(i, o, size, stride, size // 2, bias=False), nn.BatchNorm2d(o), nn.ReLU(True)
-    )
+    """A convolution, rectified."""
+    return nn.Sequential(nn.Conv2d(i, o, size, stride, size // 2), nn.ReLU(True))
 
 
 class Residual(nn.Module):
@@ -35,7 +33,7 @@ class Residual(nn.Module):
     def __init__(self, width: int) -> None:
         super().__init__()
         self.a = convolved(width, width)
-        self.b = nn.Sequential(nn.Conv2d(width, width, 3, 1, 1, bias=False), nn.BatchNorm2d(width))
+        self.b = nn.Sequential(nn.Conv2d(width, width, 3, 1, 1))
 
     def forward(self, x: Tensor) -> Tensor:
         return F.relu(x + self.b(self.a(x)), inplace=True)

@@ -18,10 +18,11 @@ from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from lab.training.batches import INPUT_M, LEFT_SHOULDER, RIGHT_SHOULDER, Pictures, altered
 from lab.training.network import CELLS, INPUT_PX, JOINTS, TOES, Network
+from lab.training.warm_start import begin_with
 
 BLUR_CELLS = 0.8
 MASK_WEIGHT = 4.0
-_RATE, _RATE_AT_LAST = 3e-3, 1e-5
+_RATE, _RATE_AT_LAST = 7e-4, 5e-6
 _WARM_UP, _KEPT = 500, 0.999  # steps; of the mean at each step
 _TOLD = 100  # steps
 
@@ -142,15 +143,21 @@ def main() -> int:
     )
     parser.add_argument("pictures", type=Path, help="a folder that may still be filled")
     parser.add_argument("out", type=Path)
+    parser.add_argument(
+        "--begin", type=Path, help="a trained network, as wide or narrower, to go on from"
+    )
     parser.add_argument("--minutes", type=float, default=45.0)
     parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu")
-    parser.add_argument("--batch", type=int, default=512)
+    parser.add_argument("--batch", type=int, default=128)
     parser.add_argument("--most", type=int, default=100_000, help="pictures held in memory")
     parser.add_argument("--discard", action="store_true", help="delete files that were read")
     args = parser.parse_args()
     torch.manual_seed(0)
     pictures = Pictures(args.pictures, args.most, args.device, discard=args.discard)
-    training = Training(Network(), args.device)
+    network = Network()
+    if args.begin is not None:
+        begin_with(network, args.begin)
+    training = Training(network, args.device)
     train([training], pictures, args.minutes, args.batch)
     training.export(args.out)
     return 0

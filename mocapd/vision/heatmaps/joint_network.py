@@ -27,14 +27,14 @@ STATURE_M = 1.75  # of a person, to which all sizes are brought
 SIDE_M = 2.4  # of what the input shows, at the distance of the body
 MIDDLE = 0.3  # of the way from hips to neck, which is in the middle of the input
 _FILE = "joint_heatmaps.onnx"
-# Where it marks each joint, from the joint in the frame of its bone, of the left side [statures]. It was trained on people
-# whose trunk and head lay a little farther back about their joints, and means of maps fall short of the ends of limbs.
+# Where it marks each joint, from the joint in the frame of its bone, of the left side [statures]: what it learned is held by
+# flesh, which turns otherwise than bones, and means of maps fall short of the ends of limbs.
 # Printed by: python -m lab.training.keypoint_marks CLIPS --pictures 6000
 _MARKS = {
-    "head": (0.0, 0.0021, 0.0098), "neck": (0.0, -0.0003, 0.0106), "hips": (0.0, 0.0029, 0.0079),
-    "UpperArm": (0.0020, -0.0028, 0.0032), "LowerArm": (0.0018, -0.0010, 0.0126), "Hand": (-0.0168, -0.0018, 0.0),
-    "UpperLeg": (-0.0041, -0.0015, 0.0075), "LowerLeg": (0.0013, 0.0018, -0.0078), "Foot": (-0.0014, 0.0074, 0.0050),
-    "Toes": (-0.0005, 0.0097, -0.0132),
+    "head": (0.0, 0.0005, 0.0010), "neck": (0.0, -0.0004, 0.0014), "hips": (0.0, 0.0001, 0.0005),
+    "UpperArm": (0.0004, -0.0032, 0.0001), "LowerArm": (0.0002, -0.0015, 0.0114), "Hand": (-0.0180, -0.0013, -0.0005),
+    "UpperLeg": (-0.0035, -0.0016, 0.0022), "LowerLeg": (0.0009, -0.0027, -0.0045), "Foot": (-0.0012, 0.0039, 0.0064),
+    "Toes": (0.0002, 0.0057, -0.0080),
 }  # fmt: skip
 
 
