@@ -30,7 +30,7 @@ _AGAINST = 0.2  # a larger share of views that agree as given excludes a mistake
 _RIVAL = 0.75  # of the best zoom's gain; another camera's with more is an alternative
 _OFTEN = 0.65  # least share of stretches that an explanation must improve
 # Limits of angles between views of people that contradict each other: with the same motion in both, and without
-_CONTRADICT_DEG, _STRANGE_DEG = 1.8, 1.15
+_CONTRADICT_DEG, _STRANGE_DEG = 1.8, 1.0
 _LEAST_STRETCHES = 2
 _LEAST_FOR_ZOOM = 3  # views that fit, for a mistake with free numbers
 
