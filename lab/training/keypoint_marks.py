@@ -2,7 +2,7 @@
 
 python -m lab.training.keypoint_marks CLIPS --pictures 6000
 
-The network learned the joints of people whose flesh lay otherwise about them, and means of maps fall short of the ends of
+What the network learned is held by flesh, which turns otherwise than bones, and means of maps fall short of the ends of
 limbs. Random people are drawn; the offset that explains what is off in all pictures is found by robust least squares (each
 picture tells two of its three components).
 """

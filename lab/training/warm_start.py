@@ -27,13 +27,12 @@ def begin_with(network: Network, path: Path) -> None:
     layers = _in_order(network)
     if len(nodes) != len(layers):
         raise ValueError(f"{path}: {len(nodes)} convolutions; the network has {len(layers)}")
-    up = next(
-        kept[node.input[1]].shape[1]
+    trained = {
+        layer: (kept[node.input[1]], kept[node.input[2]])
         for node, layer in zip(nodes, layers, strict=True)
-        if layer is network.head
-    )
-    for node, layer in zip(nodes, layers, strict=True):
-        weight, bias = (kept[name] for name in node.input[1:3])
+    }
+    up = trained[network.head][0].shape[1]
+    for layer, (weight, bias) in trained.items():
         columns = torch.arange(weight.shape[1])
         if layer is network.toes[0][0]:  # what it takes is two layers' beside each other
             columns[columns >= up] += network.head.weight.shape[1] - up

@@ -29,7 +29,7 @@ MIDDLE = 0.3  # of the way from hips to neck, which is in the middle of the inpu
 _FILE = "joint_heatmaps.onnx"
 # Where it marks each joint, from the joint in the frame of its bone, of the left side [statures]: what it learned is held by
 # flesh, which turns otherwise than bones, and means of maps fall short of the ends of limbs.
-# Printed by: python -m lab.training.keypoint_marks CLIPS --pictures 6000
+# Means of what this printed with the seeds 7 and 8: python -m lab.training.keypoint_marks CLIPS --pictures 3600
 _MARKS = {
     "head": (0.0, 0.0005, 0.0010), "neck": (0.0, -0.0004, 0.0014), "hips": (0.0, 0.0001, 0.0005),
     "UpperArm": (0.0004, -0.0032, 0.0001), "LowerArm": (0.0002, -0.0015, 0.0114), "Hand": (-0.0180, -0.0013, -0.0005),
@@ -80,7 +80,7 @@ class JointNetwork:
 
     def __init__(self) -> None:
         """Read the trained network that comes with mocapd."""
-        # half the time of OpenCV's newer engine for a network this small
+        # OpenCV's newer engine takes no less time for a network this small
         self._net = cv2.dnn.readNetFromONNX(str(asset_path(_FILE)), cv2.dnn.ENGINE_CLASSIC)
         self._input = np.zeros((1, 4, INPUT_PX, INPUT_PX), np.float32)
 
