@@ -91,6 +91,18 @@ def test_frames_that_were_dropped_on_the_way_are_not_one_delay() -> None:
     assert "out of step by 10 frames" in finding.what
 
 
+def test_somebody_who_stands_still_after_walking_in_is_no_jump() -> None:
+    """What a lamp's flicker has in common at another delay is small beside the walk."""
+    times_s = np.arange(0.0, 14.0, 1.0 / HZ)
+    walks = times_s < 5.0
+    flicker = np.random.default_rng(11).standard_normal((3, len(times_s) + 3))
+    changes = [
+        6.0 + np.where(walks, 3.0 * motion(times_s), 0.1 * (flicker[0, k:][: len(times_s)] + own))
+        for k, own in ((0, 0.3 * flicker[1, 3:]), (3, 0.3 * flicker[2, 3:]))
+    ]
+    assert late_findings(timings(*(MotionSignal(times_s, one) for one in changes))) == ()
+
+
 def test_the_meter_sees_what_moves() -> None:
     meter, picture = MotionMeter(), np.full((120, 160, 3), 90, np.uint8)
     for k in range(6):

@@ -46,7 +46,7 @@ class TimeVerdict:
 def judge_times(cameras: Sequence[CameraTiming]) -> TimeVerdict:
     """Findings of each camera whose times are certainly early or late, or have a jump."""
     delays = camera_delays([camera.signal for camera in cameras])
-    jumps = _jumps(cameras)
+    jumps = _jumps(cameras, delays)
     rate = None if any(jumps) else _wrong_rate(cameras, delays)
     if rate is not None:
         return TimeVerdict((rate,), (True,) * len(cameras))
@@ -139,8 +139,14 @@ def _agreement(delays: Sequence[CameraDelay | None]) -> float:
     return sum(delay.agreement for delay in delays if delay is not None and _is_reliable(delay))
 
 
-def _jumps(cameras: Sequence[CameraTiming]) -> list[tuple[float, float] | None]:
-    """For each camera, reliable delays of the first and the last part of the recording, where they differ."""
+def _jumps(
+    cameras: Sequence[CameraTiming], whole: Sequence[CameraDelay | None]
+) -> list[tuple[float, float] | None]:
+    """For each camera, reliable delays of the first and the last part of the recording, where they differ.
+
+    A part counts if it agrees better than the whole recording, which one delay cannot explain after a jump; in a quiet part
+    noise agrees a little at any delay.
+    """
     begin = max(
         float(camera.signal.times_s[0]) if len(camera.signal.times_s) else np.inf
         for camera in cameras
@@ -157,7 +163,8 @@ def _jumps(cameras: Sequence[CameraTiming]) -> list[tuple[float, float] | None]:
     ]
     out: list[tuple[float, float] | None] = []
     for i in range(len(cameras)):
-        there = [one for part in parts if (one := part[i]) is not None]
+        least = one.agreement if (one := whole[i]) is not None else _AGREEMENT
+        there = [one for part in parts if (one := part[i]) is not None and one.agreement > least]
         late_s = [delay.late_s for delay in there if _is_reliable(delay)]
         changed = len(late_s) > 1 and abs(late_s[-1] - late_s[0]) > _JUMP_S
         out.append((late_s[0], late_s[-1]) if changed else None)
