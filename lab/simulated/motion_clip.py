@@ -37,8 +37,7 @@ class MotionClip:
 class Placement:
     """Which part of a clip is done, and where. begin, frames: of the clip; yaw_deg: to where the person then looks on
     average, 0 is +Z; the middle of the way is the world's origin. Before, it stands for `stand_s` in the T-pose or
-    another named pose, `stance`, and goes over to the clip in `blend_s`. grounded: raised or lowered so that
-    the lower ankle is as high as the clip's, which legs of other proportions would not keep."""
+    another named pose, `stance`, and goes over to the clip in `blend_s`."""
 
     begin: int
     frames: int
@@ -46,7 +45,6 @@ class Placement:
     stand_s: float
     blend_s: float
     stance: str = "t_pose"
-    grounded: bool = False
 
 
 def read_clip(path: Path) -> MotionClip:
@@ -111,7 +109,10 @@ def within(clip: MotionClip, seconds: float, most_m: float) -> int | None:
 
 
 def performed(clip: MotionClip, where: Placement) -> Performed:
-    """What a person of any skeleton does: the clip's rotations, its way in proportion to the legs."""
+    """What a person of any skeleton does: the clip's rotations, its way in proportion to the legs.
+
+    The lower ankle is as high as the clip's, which legs of other proportions would not keep by themselves.
+    """
     last = where.begin + where.frames
     hips_m, quats = clip.hips_m[where.begin : last].copy(), clip.global_xyzw[where.begin : last]
     ahead = rotations.to_matrix(quats[:, 0])[:, :, 2].mean(axis=0)
@@ -126,9 +127,8 @@ def performed(clip: MotionClip, where: Placement) -> Performed:
         chain = [INDEX["left" + bone] for bone in ("UpperLeg", *_LEG)]
         leg_m = float(np.linalg.norm(np.diff(rest_m[chain], axis=0), axis=1).sum())
         way_m = hips_m * (leg_m / clip.leg_m)
-        if where.grounded:
-            over_m = clip.ankle_m[where.begin : last] - np.quantile(clip.ankle_m, 0.05)
-            way_m[:, 1] += over_m * (leg_m / clip.leg_m) - _over_floor_m(skeleton, way_m, quats)
+        over_m = clip.ankle_m[where.begin : last] - np.quantile(clip.ankle_m, 0.05)
+        way_m[:, 1] += over_m * (leg_m / clip.leg_m) - _over_floor_m(skeleton, way_m, quats)
         standing_m = np.array([way_m[0, 0], rest_m[0, 1], way_m[0, 2]])
         heading_rad = np.radians(where.yaw_deg)
         upright = np.tile(rotations.exp(np.array([0.0, heading_rad, 0.0])), (len(NAMES), 1))

@@ -106,7 +106,6 @@ def plain_plan(clips: Sequence[MotionClip], scenes: Sequence[Scenario]) -> list[
             EMPTY_S + STAND_S,
             BLEND_S,
             stance,
-            grounded=True,
         )
         name = f"plain{number:02d}_{rig.name}_{scene.name}_{clip.name}"
         scenario = plain_scenario(name, number, scene, rig, where)

@@ -51,7 +51,6 @@ def ring_plan(clips: Sequence[MotionClip], scenes: Sequence[Scenario]) -> list[P
             EMPTY_S + STAND_S,
             BLEND_S,
             "relaxed",
-            grounded=True,
         )
         name = f"ring{number:02d}_{rig.name}_{scene.name}_{clip.name}"
         scenario = plain_scenario(name, _FIRST_NUMBER + number, scene, rig, where)

@@ -86,7 +86,6 @@ def plan(clips: Sequence[MotionClip], scenes: Sequence[Scenario]) -> list[Planne
             YAWS_DEG[number % len(YAWS_DEG)],
             EMPTY_S + STAND_S,
             BLEND_S,
-            grounded=True,
         )
         name = f"{number:02d}_{rig.name}_{scene.name}_{clip.name}"
         sessions.append(

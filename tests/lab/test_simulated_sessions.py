@@ -204,7 +204,7 @@ def test_a_stereo_pair_looks_one_way_from_twelve_centimetres_apart(tmp_path: Pat
     assert all(np.linalg.norm(_apart_m(s)) > 1.5 for s in wide)
 
 
-def test_a_grounded_clip_keeps_the_lower_ankle_as_high_as_it_was(tmp_path: Path) -> None:
+def test_a_clip_keeps_the_lower_ankle_as_high_as_it_was(tmp_path: Path) -> None:
     """Somebody who squats: the hips fall with the knees' bend, for legs of the clip's proportions."""
     names = [name for name in NAMES if not name.endswith("Toes")]
     bend = 0.9 * np.sin(np.linspace(0.0, np.pi, FRAMES))
@@ -219,7 +219,7 @@ def test_a_grounded_clip_keeps_the_lower_ankle_as_high_as_it_was(tmp_path: Path)
     hips[:, 1] -= (hip - ankle) * (1.0 - np.cos(bend))
     clip = read_clip(clip_file(tmp_path, global_quats=quats, hips_pos=hips))
     np.testing.assert_allclose(clip.ankle_m, clip.ankle_m[0], atol=1e-3)
-    where = Placement(0, FRAMES, 0.0, 0.0, 0.1, grounded=True)
+    where = Placement(0, FRAMES, 0.0, 0.0, 0.1)
     world = World(
         scenario(body={"whole": True, "thigh_length": 1.15, "shank_length": 0.9}),
         performed(clip, where),
