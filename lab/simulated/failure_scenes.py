@@ -1,8 +1,8 @@
 """Scenes for what the paper's tracker without a shirt got wrong, and one of everything that goes wrong around it.
 
 Hecht et al. (2009) name them: a person seen from the side, a leg that hides the other, a moving limb that drags a
-still one along, folded arms, and a turn right round. Each scene begins with somebody who hangs the arms and ends
-in the open, so that it can be told how long a tracker needs until it is right again.
+still one along, folded arms, and a turn right round; somebody who walks by close to a lens is ours. Each scene begins with
+somebody who hangs the arms and ends in the open, so that it can be told how long a tracker needs until it is right again.
 """
 
 from dataclasses import dataclass
@@ -13,6 +13,7 @@ from lab.simulated.session_plan import EMPTY_S, PlannedSession
 from lab.simulated.variation import stereo_pair
 from mocapd.sim.person_spec import (
     BodySpec,
+    Bystander,
     Clothes,
     ClothesEvent,
     Jacket,
@@ -37,18 +38,35 @@ _ACROSS = ((-0.05, -0.75, 0.65), (-0.85, 0.0, 0.55))
 _HELD = ((-0.15, -0.9, 0.15), (0.05, -0.05, 1.0))  # the right forearm, forwards
 
 
+def _key(t_s: float, pose: str = "relaxed", **more: object) -> PoseKeyframe:
+    return msgspec.structs.replace(PoseKeyframe(t_s=t_s, pose=pose), **more)
+
+
+# half a metre before the lenses of the wide pair, a metre before those of the other
+_WALKS_BY = Bystander(
+    body=BodySpec(stature_m=1.8, whole=True),
+    clothes=Clothes(shirt="plain", top_srgb=(70, 110, 60), trousers_srgb=(40, 44, 60)),
+    motion=MotionSpec(
+        keyframes=[
+            _key(0.0, at_m=(-3.4, 2.2), yaw_deg=90.0),
+            _key(1.6, at_m=(-3.4, 2.2), yaw_deg=90.0),
+            _key(4.6, at_m=(3.4, 2.2), yaw_deg=90.0),
+            _key(5.6, at_m=(3.4, 7.0), yaw_deg=0.0),  # and back, behind the cameras
+            _key(7.0, at_m=(-3.4, 7.0), yaw_deg=0.0),
+        ]
+    ),
+)
+
+
 @dataclass(frozen=True, slots=True)
 class FailureScene:
     """keys: between the first second, in which the person hangs the arms, and the last half second. clear_s: from
-    then on nothing hides the person any more [s]."""
+    then on nothing hides the person any more [s]. others: who comes along."""
 
     name: str
     clear_s: float
     keys: tuple[PoseKeyframe, ...]
-
-
-def _key(t_s: float, pose: str = "relaxed", **more: object) -> PoseKeyframe:
-    return msgspec.structs.replace(PoseKeyframe(t_s=t_s, pose=pose), **more)
+    others: tuple[Bystander, ...] = ()
 
 
 FAILURE_SCENES = (
@@ -78,6 +96,10 @@ FAILURE_SCENES = (
         _key(2.2, yaw_deg=90.0), _key(3.2, yaw_deg=180.0), _key(4.1, yaw_deg=270.0),
         _key(5.0, yaw_deg=360.0), _key(6.0, "arms_up"), _key(6.8, "hands_on_hips"),
     )),
+    FailureScene("close_to_the_lens", 4.6, (
+        _key(2.4, "goalpost"), _key(3.2), _key(4.0, "arms_forward"), _key(5.0), _key(6.0, "wave_left"),
+        _key(6.8, "star"),
+    ), (_WALKS_BY,)),
 )  # fmt: skip
 
 
@@ -99,6 +121,7 @@ def failure_sessions(scene: Scenario) -> list[PlannedSession]:
             scenario = msgspec.structs.replace(
                 scene, name=name, seed=3000 + number, loop_s=_LOOP_S, person_appears_s=EMPTY_S, cameras=cameras,
                 body=_BODY, clothes=_CLOTHES, motion=MotionSpec(keyframes=keys), lights=_steady(scene),
+                others=one.others,
             )  # fmt: skip
             sessions.append(PlannedSession(name, scenario, clear_s=one.clear_s))
     return [*sessions, interruptions(scene, rigs["pair"])]

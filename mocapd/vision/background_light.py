@@ -15,31 +15,39 @@ _GAIN = (0.1, 10.0)
 _PASSES = 2
 _EXPLAINED = 16.0  # from the relit background, 0..255: as far as it may be from a picture of it
 _LEAST_ROOM = 0.5  # of what was known
+# of what changed: of lamps in recordings 0.5 to 1, of people who pass close to a lens 0.02 to 0.2
+_LEAST_LIT = 0.35
 
 
 def relight_background(
     picture: Bytes, body: Bytes, mean: NDArray[np.float32], age: NDArray[np.uint8]
-) -> None:
-    """Take the picture (h,w,3) for the background where `body` (h,w) is 0, and scale the model
-    behind the body by the gain around it.
+) -> bool:
+    """Take the picture (h,w,3) for the background where `body` (h,w) is 0, and scale the model behind the body by the gain
+    around it; False if another light does not explain what changed, for instance somebody close to the lens.
 
     mean (h,w,3) 0..255 and age (h,w) are changed in place. With nobody known a person may be anywhere: the room is then
     what another light explains. Where that is too little, for instance after the camera was moved, the whole model
     becomes invalid.
     """
-    is_room, is_known = body == 0, age >= _LEAST_AGE
-    gain = _gain(picture, mean, is_room & is_known)
+    is_room = body == 0
+    is_known = is_room & (age >= _LEAST_AGE)
+    changed = is_known & (np.abs(picture - mean) > _EXPLAINED).any(axis=2)
+    gain = _gain(picture, mean, is_known)
+    for _ in range(_PASSES):  # a person counts as light in the first one
+        lit = is_known & (np.abs(picture - gain * mean) <= _EXPLAINED).all(axis=2)
+        gain = _gain(picture, mean, lit)
     if is_room.all():
-        for _ in range(_PASSES):  # a person counts as light in the first one
-            is_room = is_known & (np.abs(picture - gain * mean) <= _EXPLAINED).all(axis=2)
-            gain = _gain(picture, mean, is_room)
-        if np.count_nonzero(is_room) < _LEAST_ROOM * np.count_nonzero(is_known):
+        if np.count_nonzero(lit) < _LEAST_ROOM * np.count_nonzero(is_known):
             age[:] = 0
-            return
+            return True
+        is_room = lit
+    if np.count_nonzero(lit & changed) < _LEAST_LIT * np.count_nonzero(changed):
+        return False
     behind = ~is_room
     mean[behind] = np.minimum(mean[behind] * gain[behind], 255.0)
     age[behind] = np.minimum(age[behind], _AGE_BEHIND)
     mean[is_room] = picture[is_room]
+    return True
 
 
 def _gain(picture: Bytes, mean: NDArray[np.float32], known: NDArray[np.bool_]) -> Singles:

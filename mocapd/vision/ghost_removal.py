@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.types import Bytes, Singles
-from mocapd.vision.foreground_kernels import stands
+from mocapd.vision.foreground_kernels import UNKNOWN, stands
 
 _OUTLINE = np.ones((3, 3), np.uint8)
 _BODY_EDGE = np.ones((7, 7), np.uint8)  # edges within half of this belong to the body
@@ -43,6 +43,7 @@ def find_ghosts(
     there = stands(before)
     if not there.any():
         return there
+    body = np.where(before == UNKNOWN, np.uint8(1), body)  # the room has no edges there
     p, pictures = params, (picture, background)
     with_arms = np.zeros_like(there)
     if arms.any():

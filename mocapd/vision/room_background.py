@@ -40,6 +40,9 @@ class BackgroundParams:
     rate: float = 0.04  # share of the new picture in a valid pixel
     lamp_tolerance: float = 0.055  # of a channel, 0..1: a larger difference means another light
     lamp_share: float = 0.2  # of the background that changes at once when a lamp does
+    # looks that a light must last to be remembered, and the share that may look otherwise when it comes back
+    lasting_looks: int = 60
+    same_share: float = 0.1
 
 
 class RoomBackground:
@@ -58,6 +61,12 @@ class RoomBackground:
         self.lights = 0
         self.age[:] = 0
         self._looks = 0
+        self._forget_earlier()
+
+    def _forget_earlier(self) -> None:
+        """Forget the room in an earlier light; the present light begins now."""
+        self._earlier: tuple[Singles, Bytes] | None = None  # mean and age
+        self._since = self._looks
 
     @property
     def is_new(self) -> bool:
@@ -74,18 +83,21 @@ class RoomBackground:
         self.mean[is_room] = picture[is_room]
         self.age[is_room] = self._params.least_looks
         self._looks = self._params.first_looks
+        self._forget_earlier()
 
     def set_known(self, room: Bytes, valid: NDArray[np.bool_]) -> None:
         """Take the empty room (h,w,3) for the background where it is valid (h,w)."""
         self.mean[:] = room
         self.age[:] = np.where(valid, self._params.least_looks, 0)
         self._looks = self._params.first_looks
+        self._forget_earlier()
 
     def forget_body(self, picture: Bytes, body: Bytes) -> None:
         """Forget the background where `body` (h,w) is not 0 and the picture (h,w,3) looks like it: the model
         learned the body of a person at rest."""
         off = np.abs(picture - self.mean).max(axis=-1)
         self.age[(body > 0) & (off <= self._params.tolerance)] = 0
+        self._forget_earlier()
 
     def remove_ghosts(self, picture: Bytes, before: Bytes, body: Bytes, arms: Bytes) -> None:
         """Move the ghosts (`find_ghosts`) of a picture (h,w,3) into the background; before (h,w): the foreground, where they
@@ -97,17 +109,35 @@ class RoomBackground:
         before[ghosts] = BACKGROUND
 
     def follow_light(self, picture: Bytes, body: Bytes) -> Floats | None:
-        """Relight the background when a lamp goes on or off: the gain of each channel (3,); None while the light stays.
-        body (h,w): not 0 at the expected person."""
+        """Relight the background when a lamp goes on or off: the gain of each channel (3,); None while the light stays, also
+        when somebody passes close to the lens. A light that lasted is remembered, and comes back as it was: something dark
+        before the lens is as a lamp that goes out. body (h,w): not 0 at the expected person."""
         p = self._params
-        share = changed(picture, body, self.mean, self.age, p.lamp_tolerance)
-        if share <= p.lamp_share:
+        earlier, lasted = self._earlier, self._looks - self._since >= p.lasting_looks
+        other_light = self._changed(picture, body, self.mean, self.age) > p.lamp_share
+        if not other_light and (lasted or earlier is None or not self._is_unknown()):
             return None
         visible = (body == 0) & (self.age >= p.least_looks)
-        before, now = self.mean[visible].mean(axis=0), picture[visible].mean(axis=0)
-        relight_background(picture, body, self.mean, self.age)
+        present = self.mean.copy(), self.age.copy()
+        if earlier is not None and self._changed(picture, body, *earlier) <= p.same_share:
+            self.mean[:], self.age[:] = earlier
+        elif not (other_light and relight_background(picture, body, self.mean, self.age)):
+            return None
+        if lasted or earlier is None:
+            self._earlier = present
+        self._since = self._looks
         self.lights += 1
+        if not visible.any():
+            return np.ones(3)
+        before, now = present[0][visible].mean(axis=0), picture[visible].mean(axis=0)
         return np.asarray(np.clip((now + 1.0) / (before + 1.0), 0.1, 10.0), np.float64)
+
+    def _is_unknown(self) -> bool:
+        """Whether most of the room is, as after the camera was covered."""
+        return bool(np.median(self.age[::4, ::4]) < self._params.least_looks)
+
+    def _changed(self, picture: Bytes, body: Bytes, mean: Singles, age: Bytes) -> float:
+        return changed(picture, body, mean, age, self._params.lamp_tolerance)
 
     def learn(self, picture: Bytes, body: Bytes, ticks: int = 1) -> None:
         """Follow the background where `body` (h,w) is 0; ticks: of 1/30 s since the last update. While it is new all

@@ -145,6 +145,41 @@ def test_somebody_whom_nobody_tracks_does_not_become_the_room_when_a_lamp_goes_o
     assert background.follow_light(seen, NOBODY) is None
 
 
+@pytest.mark.parametrize("somebody_is_tracked", [False, True])
+def test_somebody_who_passes_close_to_the_lens_is_no_lamp(somebody_is_tracked: bool) -> None:
+    background, body = learned(), NOBODY.copy()
+    if somebody_is_tracked:
+        body[20:50, 10:20] = 1
+    seen = wall(50)
+    seen[20:50, 10:20] = (20, 90, 140)
+    seen[:, 50:] = np.random.default_rng(3).integers(60, 120, (H, W - 50, 3))
+    assert background.follow_light(seen, body) is None
+    assert np.mean(background.foreground(seen)[:, 52:] != BACKGROUND) > 0.95
+    gone = wall(51)
+    gone[20:50, 10:20] = (20, 90, 140)
+    before = background.foreground(gone)
+    assert (before[22:48, 12:18] == BEFORE).all()
+    assert np.mean(before[:, 40:] == BACKGROUND) > 0.98
+
+
+def test_after_something_dark_before_the_lens_the_room_is_as_it_was() -> None:
+    """Somebody who came meanwhile stands before it."""
+    background = learned(80)
+    dark = wall(90)
+    dark[:, 30:] = 8
+    assert background.follow_light(dark, NOBODY) is not None
+    background.learn(dark, NOBODY)
+    darker = wall(91)
+    darker[:, 15:] = 8
+    background.follow_light(darker, NOBODY)
+    seen = wall(92)
+    seen[20:50, 60:65] = (20, 90, 140)
+    assert background.follow_light(seen, NOBODY) is not None
+    before = background.foreground(seen)
+    assert (before[22:48, 61:64] == BEFORE).all()
+    assert np.mean(before[:, :55] == BACKGROUND) > 0.98
+
+
 def test_what_somebody_uncovers_is_background_and_somebody_who_comes_is_not() -> None:
     """A person who stood there while the background was learned, and goes."""
     background = RoomBackground(H, W, BackgroundParams())

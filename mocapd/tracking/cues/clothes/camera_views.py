@@ -1,6 +1,6 @@
 """Per-camera state of the clothes cue: downscaled picture, background model, foreground mask and appearance model."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TypeVar
 
 import cv2
@@ -47,6 +47,7 @@ class CameraView:
             (h, w), np.float32
         )  # log-odds of the network; 0 outside its crop
         self.near: Roi | None = None  # the region about it
+        self.is_covered = False  # about the body, by somebody close to the lens
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
         self.may_hold_body = (
@@ -214,12 +215,20 @@ class CameraViews:
             return self._classify(i, state, marked=True), result
 
         done = self._each(process, self.present)
-        return [view for view, _ in done if view is not None], [result for _, result in done]
+        return self._clear(view for view, _ in done), [
+            result
+            for i, (_, result) in zip(self.present, done, strict=True)
+            if not self.each[i].is_covered
+        ]
 
     def classify(self, state: MotionState) -> list[View]:
         """Classifies every present picture into regions about the predicted body, and renders the body into each."""
-        views = self._each(lambda i: self._classify(i, state), self.present)
-        return [view for view in views if view is not None]
+        return self._clear(self._each(lambda i: self._classify(i, state), self.present))
+
+    def _clear(self, views: Iterable[View | None]) -> list[View]:
+        """Those of cameras that nothing covers; all if each is covered."""
+        there = [view for view in views if view is not None]
+        return [view for view in there if not self.each[view.index].is_covered] or there
 
     def _classify(self, i: int, state: MotionState, marked: bool = False) -> View | None:
         """marked: the state was drawn last, to mark the body."""
@@ -231,6 +240,9 @@ class CameraViews:
         x0, y0, x1, y1 = roi
         before = np.ascontiguousarray(camera.foreground[y0:y1, x0:x1])
         drawn = drawing.last(roi)[0] if marked else drawing.render(state, dt_s, roi)
+        beside = drawn == 0
+        stand = np.count_nonzero(stands(before) & beside)
+        camera.is_covered = bool(stand > p.covered_share * np.count_nonzero(beside))
         ids = camera.appearance.classify(
             np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
             before,

@@ -22,7 +22,7 @@ class StartParams:
 
     least_px: int = 400  # of a blob, in work pixels
     least_height_px: int = 50
-    most_share: float = 0.6  # of a picture that is not its background, in a camera that counts
+    most_share: float = 0.4  # of a picture that is not its background, in a camera that counts
     nearest_m: float = 1.2
     farthest_m: float = 6.0
     step_m: float = 0.05
@@ -153,6 +153,9 @@ class ClothesParams:
     )
 
     margin_px: int = 26  # about the predicted body, that is classified [work px]
+    # of the region about the predicted body, that is foreground beside it, in a camera that somebody covers: of people near
+    # others up to 0.4, of those who pass close to a lens from 0.6
+    covered_share: float = 0.5
     beside_px: int = 15  # about the body, that the background does not learn
     close_px: int = 3  # the same of pixels that have no background yet
     uncovered_s: float = 10 / 30  # between two searches for ghosts
