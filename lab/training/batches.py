@@ -14,7 +14,7 @@ from lab.training.network import CELLS, INPUT_PX, JOINTS
 LEFT_SHOULDER, RIGHT_SHOULDER = 3, 4
 MIRROR = [0, 1, 2, 4, 3, 6, 5, 8, 7, 10, 9, 12, 11, 14, 13, 16, 15]
 PICTURE_PX, PICTURE_M, INPUT_M = 128, 3.0, 2.4
-FACING_THE_CAMERA = 2.5  # so many times as often as others: so people stand before cameras
+FACING_THE_CAMERA = 2.0  # so many times as often as others: so people stand before cameras
 _BOXES = 3  # at most, that hide somebody in a picture
 _REST_S = 0.5  # between looks for new files
 

@@ -25,9 +25,10 @@ from mocapd.types import Floats, Pose, Skeleton
 # Shares of poses: as in a clip; of two clips; the others are made up
 _OF_CLIP, _OF_TWO = 0.28, 0.4
 # Shares of made-up arms, each with those before it: both forwards (in a squat), like a named pose
-_FORWARDS, _FORWARDS_SUNK, _LIKE_NAMED = 0.1, 0.4, 0.45
-# Shares of lifted feet, with those before it: kicked forwards, a leg flung anywhere; of feet that stand; of squats
-_KICKS, _FLUNG, _LUNGES, _TIPTOES = 0.35, 0.65, 0.12, 0.3
+_FORWARDS, _FORWARDS_SUNK, _LIKE_NAMED = 0.1, 0.4, 0.35
+_BEFORE = 0.35  # share of the other arms whose hand is before the trunk or the face
+# Shares of feet: lifted; of those, with those before it: kicked forwards, a leg flung anywhere; of feet that stand; of squats
+_LIFTED, _KICKS, _FLUNG, _LUNGES, _TIPTOES = 0.4, 0.5, 0.75, 0.12, 0.3
 _SQUATS = 0.3  # hips as far down
 _KNEES_LEAD = 0.5  # share of squats whose knees do not heed where the feet point
 _FOOT_M = 0.18  # from the ankle to the toes
@@ -39,7 +40,10 @@ _MIRROR = np.array([1.0, -1.0, -1.0, 1.0])  # of a rotation, at x = 0
 _TRUNK_M, _TRUNK_FROM_TO_M = (0.17, 0.14), (-0.2, 0.5)
 _HEAD_M, _HEAD_RADIUS_M = np.array([0.0, 0.65, 0.03]), 0.14
 _SHOULDER_M, _UPPER_M, _FORE_M = np.array([0.17, 0.42, 0.0]), 0.29, 0.25
-_SWING_RAD_S = {"arm": 4.0, "leg": 2.0}  # of limbs that are made to move
+_SWING_RAD_S = {"arm": 3.5, "leg": 2.0}  # of limbs that are made to move
+_SWING_SPREAD = 0.6  # of its logarithm: seldom as fast as a kick
+# of hands before the trunk, in the frame of the chest, outwards, up and forwards [m]
+_HAND_FROM_M, _HAND_TO_M = (-0.25, 0.02, 0.14), (0.22, 0.68, 0.42)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,8 +113,8 @@ def _made_up(rng: np.random.Generator, skeleton: Skeleton) -> Floats:
     elif arms < _LIKE_NAMED:
         left, right = _like_named(rng)
     else:
-        left = _like_named(rng)[0] if rng.uniform() < 0.2 else _any_arm(rng, 1.0)
-        right = _like_named(rng)[1] if rng.uniform() < 0.2 else _any_arm(rng, -1.0)
+        left = _like_named(rng)[0] if rng.uniform() < 0.2 else _free_arm(rng, 1.0)
+        right = _like_named(rng)[1] if rng.uniform() < 0.2 else _free_arm(rng, -1.0)
     forwards_deg = rng.normal(0.0, 9.0) + sunk * rng.uniform(0.0, 70.0)
     if rng.uniform() < 0.12:
         forwards_deg += rng.uniform(0.0, 60.0)
@@ -164,6 +168,30 @@ def _forwards(rng: np.random.Generator) -> tuple[ArmDirections, ArmDirections]:
     return arm(1.0), arm(-1.0)
 
 
+def _free_arm(rng: np.random.Generator, outwards: float) -> ArmDirections:
+    return (_before_trunk if rng.uniform() < _BEFORE else _any_arm)(rng, outwards)
+
+
+def _before_trunk(rng: np.random.Generator, outwards: float) -> ArmDirections:
+    """Directions of upper arm and forearm that hold the hand before the trunk or the face, the elbow mostly down."""
+    while True:
+        reach = rng.uniform(_HAND_FROM_M, _HAND_TO_M) - _SHOULDER_M
+        length_m = float(np.linalg.norm(reach))
+        if not 0.15 < length_m < _UPPER_M + _FORE_M:
+            continue
+        down = reach / length_m
+        pole = rng.normal([0.5, -0.8, -0.2], 0.5)
+        pole = _unit(pole - (pole @ down) * down)
+        # law of cosines: as far along the reach is the elbow
+        along_m = (_UPPER_M**2 - _FORE_M**2 + length_m**2) / (2.0 * length_m)
+        elbow = along_m * down + np.sqrt(max(_UPPER_M**2 - along_m**2, 0.0)) * pole
+        fore = reach - elbow
+        at_m = _SHOULDER_M + elbow
+        if not any(_in_body(at_m + share * fore) for share in (0.0, 0.5, 1.0)):
+            side = np.array([outwards, 1.0, 1.0])
+            return _direction(elbow * side), _direction(fore * side)
+
+
 def _any_arm(rng: np.random.Generator, outwards: float) -> ArmDirections:
     """Directions of upper arm and forearm that are in nothing."""
     while True:
@@ -196,7 +224,7 @@ def _place_feet(
         rotations.to_matrix(quats[0]),
         rotations.to_matrix(rotations.exp(np.array([0.0, yaw_rad, 0.0]))),
     )
-    lifted = SIDES[rng.integers(2)] if rng.uniform() < 0.3 else None
+    lifted = SIDES[rng.integers(2)] if rng.uniform() < _LIFTED else None
     apart_m, step_m = abs(rng.normal(0.0, 0.1 + 0.15 * sunk)), rng.normal(0.0, 0.14)
     if rng.uniform() < _LUNGES:
         step_m = rng.normal(0.0, 0.4)
@@ -263,7 +291,8 @@ def _swings(rng: np.random.Generator, over_s: float) -> Floats:
     out = np.zeros((N_JOINTS, 3))
     for limb, bones in (("arm", _ARMS[1:]), ("leg", _LEGS)):
         for side in SIDES:
-            turn_rad = rng.normal(0.0, _SWING_RAD_S[limb], 3) * over_s
+            speed_rad_s = _SWING_RAD_S[limb] * rng.lognormal(0.0, _SWING_SPREAD)
+            turn_rad = rng.normal(0.0, speed_rad_s, 3) * over_s
             for bone in bones:
                 out[INDEX[side + bone]] = turn_rad * (1.0 if "Upper" in bone else 1.5)
     return out

@@ -39,6 +39,7 @@ from mocapd.vision.heatmaps.person_crop import crop_about, middle_of
 PICTURE_PX, SIDE_M = 128, 3.0  # of somebody 1.75 m tall
 _SCENES_A_FILE, _PEOPLE_A_SCENE, _POSES, _POSES_A_LIGHT = 4, 3, 24, 8
 _BESIDE = 0.2  # share of people behind whom another one stands
+_FACES, _FACES_RAD = 0.35, 0.5  # share of people who are turned to the camera, about
 _LAID = 0.05  # share of poses that lean over or lie, by up to so much
 _LAID_RAD, _THICK_M = 1.7, 0.08
 _NEAREST_M = 0.6
@@ -78,6 +79,8 @@ def examples_of(
             empty = renderer.picture(None, levels, int(rng.integers(1 << 20)))
         at_m = rng.normal(0.0, [0.35, 0.0, 0.35])
         pose = random_pose(rng, world.skeleton, clips, shutter_s)
+        if rng.uniform() < _FACES:
+            pose = _turned_to(rng, renderer.spec.position_m, pose)
         if rng.uniform() < _LAID:
             pose = _laid_down(rng, world, pose)
         pose = _moved(pose, at_m)
@@ -124,17 +127,33 @@ def _behind(rng: np.random.Generator, camera_m: tuple[float, float, float]) -> F
     return out
 
 
+def _turned_to(
+    rng: np.random.Generator, camera_m: tuple[float, float, float], pose: MovingPose
+) -> MovingPose:
+    """The hips face the camera, about."""
+    x, _, z = camera_m
+    ahead = rotations.rotate(pose.middle.quats_xyzw[0], np.array([0.0, 0.0, 1.0]))
+    turn_rad = np.arctan2(x, z) - np.arctan2(ahead[0], ahead[2]) + rng.normal(0.0, _FACES_RAD)
+    return _turned(pose, np.array([0.0, turn_rad, 0.0]))
+
+
+def _turned(pose: MovingPose, by_rad: Floats) -> MovingPose:
+    """About the hips."""
+    turn = rotations.exp(by_rad)
+    opened, closed, middle = (
+        Pose(one.root_m, rotations.multiply(turn, one.quats_xyzw))
+        for one in (pose.opened, pose.closed, pose.middle)
+    )
+    return MovingPose(opened, closed, middle)
+
+
 def _laid_down(rng: np.random.Generator, world: World, pose: MovingPose) -> MovingPose:
     """Leaning over to anywhere, as somebody who sits, crawls or lies on the floor."""
     way_rad = rng.uniform(-np.pi, np.pi)
     axis = np.array([np.cos(way_rad), 0.0, np.sin(way_rad)])
-    over = rotations.exp(rng.uniform(0.3, _LAID_RAD) * axis)
-    opened, closed, middle = (
-        Pose(one.root_m, rotations.multiply(over, one.quats_xyzw))
-        for one in (pose.opened, pose.closed, pose.middle)
-    )
-    up_m = _THICK_M - joint_positions(world.skeleton, middle)[:, 1].min()
-    return _moved(MovingPose(opened, closed, middle), np.array([0.0, up_m, 0.0]))
+    laid = _turned(pose, rng.uniform(0.3, _LAID_RAD) * axis)
+    up_m = _THICK_M - joint_positions(world.skeleton, laid.middle)[:, 1].min()
+    return _moved(laid, np.array([0.0, up_m, 0.0]))
 
 
 def _moved(pose: MovingPose, by_m: Floats) -> MovingPose:

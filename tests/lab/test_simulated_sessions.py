@@ -261,6 +261,6 @@ def test_what_follows_the_shirt_is_refused_where_nobody_wears_it(tmp_path: Path)
     folders = [tmp_path / one.name for one in sessions]
     check_suits("canned", sessions, folders)
     check_suits("shirt", sessions[-1:], folders[-1:])  # in the shirt, under a jacket for a while
-    with pytest.raises(ConfigError, match="which nobody wears in 10 of") as told:
+    with pytest.raises(ConfigError, match="which nobody wears in 12 of") as told:
         check_suits("shirt", sessions, folders)
     assert str(tmp_path) in str(told.value)

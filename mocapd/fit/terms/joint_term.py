@@ -23,6 +23,7 @@ from mocapd.types import Camera, Floats, Ints
 
 _NOWHERE = 1e-6 * np.eye(3)  # information of a joint that no camera saw [1/m^2]
 _DEEPER = 0.5  # share of an error along the ray: keypoints know depths half as well as places
+_HEAD = [INDEX["head"], INDEX["neck"]]
 _ANKLES, _TOES = ([INDEX[side + bone] for side in SIDES] for bone in ("Foot", "Toes"))
 _TRUNK = [(INDEX["left" + j], INDEX["right" + j]) for j in ("UpperArm", "UpperLeg")]
 
@@ -101,6 +102,15 @@ class JointTerm:
             float(np.median(_spreads_m(rays))) if len(rays.joints) >= least_joints else np.inf
             for rays in self.rays
         ]
+
+    def head_spreads_m(self, least_joints: int) -> list[float]:
+        """The same of head and neck, their mean; inf without both, too."""
+        out = []
+        for rays in self.rays:
+            spreads_m = _spreads_m(rays)[np.isin(rays.joints, _HEAD)]
+            is_known = len(rays.joints) >= least_joints and len(spreads_m) == len(_HEAD)
+            out.append(float(spreads_m.mean()) if is_known else np.inf)
+        return out
 
     def cameras_sure_of(self, joints: Sequence[int], most_m: float) -> Ints:
         """Of each joint, in how many cameras its keypoint is known to most_m [m] across the ray, by standard deviation."""

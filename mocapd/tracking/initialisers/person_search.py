@@ -283,15 +283,15 @@ class PersonSearch:
 
     def _as_person(self, fit: Fit, candidate: _SearchCandidate) -> Fit | None:
         """The fit, turned if keypoints say so: silhouettes of cameras all around hardly tell front from back. None if the
-        heatmaps of all pictures that show enough keypoints are as blurred as for furniture."""
+        heatmaps of head and neck are as blurred as for furniture in all pictures that show enough keypoints."""
         p, fitter = self._params, self._silhouettes
         detect = self._joints.detector(fitter, fit.state, self._views)
         terms = self._joints.term(fitter.model, map(detect, candidate.person.blobs))
-        spreads_m = [one for term in terms for one in term.median_spreads_m(self._least_joints)]
+        spreads_m = [one for term in terms for one in term.head_spreads_m(self._least_joints)]
         finite_m = [spread_m for spread_m in spreads_m if spread_m < np.inf]
         if not finite_m:
             return fit
-        if min(finite_m) > p.spread_m:
+        if min(finite_m) > p.head_spread_m:
             return None
         for _ in range(_TURNS):
             turn_rad = terms[0].turn_rad(fitter.joints(fit.state)[0])

@@ -31,10 +31,10 @@ _FILE = "joint_heatmaps.onnx"
 # flesh, which turns otherwise than bones, and means of maps fall short of the ends of limbs.
 # Means of what this printed with the seeds 7 and 8: python -m lab.training.keypoint_marks CLIPS --pictures 3600
 _MARKS = {
-    "head": (0.0, 0.0005, 0.0010), "neck": (0.0, -0.0004, 0.0014), "hips": (0.0, 0.0001, 0.0005),
-    "UpperArm": (0.0004, -0.0032, 0.0001), "LowerArm": (0.0002, -0.0015, 0.0114), "Hand": (-0.0180, -0.0013, -0.0005),
-    "UpperLeg": (-0.0035, -0.0016, 0.0022), "LowerLeg": (0.0009, -0.0027, -0.0045), "Foot": (-0.0012, 0.0039, 0.0064),
-    "Toes": (0.0002, 0.0057, -0.0080),
+    "head": (0.0, 0.0009, 0.0009), "neck": (0.0, -0.0002, 0.0017), "hips": (0.0, -0.0005, 0.0004),
+    "UpperArm": (0.0006, -0.0030, 0.0000), "LowerArm": (0.0003, -0.0014, 0.0104), "Hand": (-0.0174, -0.0012, 0.0004),
+    "UpperLeg": (-0.0034, -0.0016, 0.0021), "LowerLeg": (0.0009, -0.0026, -0.0038), "Foot": (-0.0011, 0.0041, 0.0065),
+    "Toes": (0.0005, 0.0054, -0.0083),
 }  # fmt: skip
 
 

@@ -50,7 +50,7 @@ class Keypoints:
     def term(self, _: object, __: Iterable[int]) -> tuple["Keypoints"]:
         return (self,)
 
-    def median_spreads_m(self, _: int) -> list[float]:
+    def head_spreads_m(self, _: int) -> list[float]:
         return [0.04]
 
     def turn_rad(self, joints_m: Floats) -> float:

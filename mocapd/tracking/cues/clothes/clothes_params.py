@@ -35,9 +35,9 @@ class StartParams:
     accept_explained: float = 0.75  # of silhouette and body together
     likely_explained: float = 0.6  # the same, at two attempts in a row
     same_place_m: float = 0.4  # between which the person moved no more than this
-    # median over the joints of how far the network spreads each over its map, in the camera where that is smallest: of
-    # people in sixty simulated sessions up to 0.057, in a real video up to 0.09, of plants and chairs from 0.11
-    spread_m: float = 0.1
+    # of how far the network spreads head and neck over their maps, in the camera where that is smallest: of people in
+    # recordings up to 0.045, in a real video up to 0.054, of moved chairs, plants and cupboards from 0.066
+    head_spread_m: float = 0.06
     farther_per_m: float = (
         0.08  # of such agreement, that a person one metre farther away must have more
     )
