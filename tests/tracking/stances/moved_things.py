@@ -22,25 +22,20 @@ _WAY_M = 0.9
 
 @dataclass(frozen=True, slots=True)
 class MovedThing:
-    """A thing of this size [m] that appears after the empty room and is pushed to and fro before cameras of this rig.
-
-    is_known: as a ghost: before a close pair it has somebody's outline, and the network is as sure of it as of people in real
-    videos.
-    """
+    """A thing of this size [m] that appears after the empty room and is pushed to and fro before cameras of this rig."""
 
     name: str
     rig: str
     size_m: tuple[float, float, float]
     srgb: tuple[int, int, int]
     kind: Literal["box", "ball", "tree"] = "box"
-    is_known: bool = False
 
 
 THINGS = (
     MovedThing("chair", "pair", (0.42, 0.9, 0.42), (120, 84, 54)),
     MovedThing("chair_stereo", "stereo", (0.42, 0.9, 0.42), (60, 60, 110)),
     MovedThing("cupboard", "pair", (0.5, 1.7, 0.4), (196, 120, 40)),
-    MovedThing("cupboard_stereo", "stereo", (0.5, 1.7, 0.4), (200, 196, 190), is_known=True),
+    MovedThing("cupboard_stereo", "stereo", (0.5, 1.7, 0.4), (200, 196, 190)),
     MovedThing("ball", "stereo", (0.75, 0.75, 0.75), (160, 50, 60), "ball"),
     MovedThing("plant", "pair", (0.6, 1.5, 0.6), (70, 100, 60), "tree"),
     MovedThing("chair_ring", "ring", (0.45, 1.1, 0.45), (90, 60, 50)),
