@@ -16,6 +16,8 @@ from mocapd.fit.priors.tilt_kernels import set_upright
 
 Array = NDArray[np.float64]
 
+_FREE = 1e-3  # information of a free pose, for what nothing observes
+
 
 class PosePriors(NamedTuple):
     """What holds a pose beside the evidence: rest_information (P,P) to rest_local (J,4), limit_information to within the
@@ -26,6 +28,22 @@ class PosePriors(NamedTuple):
     limits: JointLimits
     limit_information: float
     tilt_information: float
+
+
+@njit(cache=True, nogil=True)
+def _shape_step(
+    A: Array, g: Array, n_pose: int, shape_offset: Array, shape_information: Array
+) -> Array:
+    """The step of the factors where the pose is free: eliminated from A (P,P), g (P,), as in `free_shape_information`."""
+    free, factors = A.copy(), g.copy()
+    for p in range(n_pose):
+        free[p, p] += _FREE
+    for i in range(len(shape_offset)):
+        for j in range(len(shape_offset)):
+            free[n_pose + i, n_pose + j] += shape_information[i, j]
+            factors[n_pose + i] += shape_information[i, j] * shape_offset[j]
+    solve_positive(free, factors)
+    return factors[n_pose:].copy()
 
 
 @njit(cache=True, nogil=True)
@@ -45,7 +63,8 @@ def gauss_newton_step(
 
     H (P,P), b (P,) of the evidence, left as they are; of the P unknowns the first are the pose's.
     motion_information (n_pose,n_pose) holds the pose to start_root, start_local; shape_offset:
-    from the factors to what is known of them, with shape_information.
+    from the factors to what is known of them, with shape_information. It does not hold the pose while the factors are
+    found: before one camera they would otherwise follow each wrong depth, and grow with it.
     """
     rest_local, rest_information, limits, limit_information, tilt_information = priors
     _, joint_of_group, share_of_joint, _, _ = limits
@@ -56,16 +75,22 @@ def gauss_newton_step(
     away = np.empty(n_pose)
     for p in range(n_pose):
         for q in range(n_pose):
-            A[p, q] += motion_information[p, q] + rest_information[p, q]
-    difference(start_root, start_local, root, local, joint_of_group, share_of_joint, away)
-    pull_back(motion_information, away, g)
+            A[p, q] += rest_information[p, q]
     difference(root, rest_local, root, local, joint_of_group, share_of_joint, away)
     pull_back(rest_information, away, g)
     set_upright(local[0], tilt_information, A, g)
     keep_in_limits(local, limits, limit_information, A, g)
-    for i in range(P - n_pose):
-        for j in range(P - n_pose):
-            A[n_pose + i, n_pose + j] += shape_information[i, j]
-            g[n_pose + i] += shape_information[i, j] * shape_offset[j]
-    solve_positive(A, g)
+    if n_pose < P:
+        shape_step = _shape_step(A, g, n_pose, shape_offset, shape_information)
+        for p in range(n_pose):
+            for i in range(P - n_pose):
+                g[p] -= A[p, n_pose + i] * shape_step[i]
+        A = A[:n_pose, :n_pose].copy()
+        g[n_pose:] = shape_step
+    for p in range(n_pose):
+        for q in range(n_pose):
+            A[p, q] += motion_information[p, q]
+    difference(start_root, start_local, root, local, joint_of_group, share_of_joint, away)
+    pull_back(motion_information, away, g)
+    solve_positive(A, g[:n_pose])
     return g

@@ -4,7 +4,7 @@ Every iteration sums the terms of one body: the id maps of all cameras, each at 
 the trunk, and the caller's terms. `solve_kernels` adds the priors and takes the step.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -138,6 +138,13 @@ class Fitter:
         return bool(views) and all(
             a @ b > least * np.sqrt((a @ a) * (b @ b)) for a, b in combinations(rays, 2)
         )
+
+    def line_of_sight(self, state: MotionState, cameras: Collection[int]) -> Floats | None:
+        """The unit vector (3,) to the body from the only one of these cameras; None of several, which tell its depth."""
+        if len(cameras) != 1:
+            return None
+        ray = state.root_m + self._from_eyes_m[next(iter(cameras))]
+        return np.asarray(ray / np.linalg.norm(ray))
 
     def shape_information(self, H: Floats) -> Floats:
         """What the evidence says of the shape factors (n_shape,n_shape) when the pose is free."""

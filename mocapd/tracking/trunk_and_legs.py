@@ -31,8 +31,16 @@ def replace_upper_body(whole: MotionState, upper: MotionState) -> MotionState:
     return MotionState(upper.root_m, upper.local_xyzw, velocity, factors, information)
 
 
-def join_bodies(below: MotionState, upper: MotionState) -> MotionState:
-    """Trunk and arms of `upper`; legs and neck with the global rotations of `below`, a whole body."""
+def join_bodies(
+    below: MotionState, upper: MotionState, line_of_sight: Floats | None = None
+) -> MotionState:
+    """Trunk and arms of `upper`; legs and neck with the global rotations of `below`, a whole body.
+
+    line_of_sight (3,): a unit vector, along which the body is where `below` is, as the sizes of all its parts say its depth.
+    """
+    if line_of_sight is not None:
+        deeper_m = line_of_sight @ (below.root_m - upper.root_m)
+        upper = replace(upper, root_m=upper.root_m + deeper_m * line_of_sight)
     local = upper.local_xyzw.copy()
     local[LOWER_BONES] = below.local_xyzw[LOWER_BONES]
     for joint in _FIRST_OF_LOWER:

@@ -4,8 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from mocapd.body.arrays import plain
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.motion_state import MotionState
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.priors.pose_prior import wide_baseline_prior
+from mocapd.fit.solve_kernels import gauss_newton_step
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from tests.fit.synthetic import fitter, standing
@@ -46,3 +49,32 @@ def test_where_nothing_is_seen_the_prediction_is_held_by_what_is_known_of_it() -
     np.testing.assert_allclose(held.local_xyzw, before.local_xyzw, atol=1e-4)
     loose = by.fit(before, [], 1 / 30, 3).state
     assert np.abs(loose.local_xyzw - before.local_xyzw).max() > 1e-3
+
+
+def test_a_size_that_another_depth_explains_as_well_teaches_no_proportion() -> None:
+    model, state = fitter(1).model, standing("hanging", "hanging", 0.0)
+    priors, firm = plain(wide_baseline_prior(model, FitParams())), 1e3 * np.eye(model.n_pose)
+    known = initial_information(model.space)
+    rows = np.zeros((2, model.n_pose + model.n_shape))
+    rows[0, [2, model.n_pose]] = 1.0  # how large it looks: nearer, or a longer torso
+    rows[1, model.n_pose + 1] = 1.0  # the breadth of its shoulders, whatever the pose
+    H, b = 1e4 * rows.T @ rows, 1e4 * rows.T @ np.array([0.2, 0.05])
+    step = gauss_newton_step(
+        H, b, state.root_m, state.local_xyzw, state.root_m, state.local_xyzw, firm, priors,
+        np.zeros(model.n_shape), known,
+    )  # fmt: skip
+    torso, shoulders = step[model.n_pose : model.n_pose + 2]
+    assert abs(torso) < 1e-3 < 0.04 < shoulders
+    np.testing.assert_allclose(step[2], 0.2 * 1e4 / (1e4 + 1e3), rtol=0.01)
+
+
+def test_one_camera_has_a_line_of_sight_to_the_body_and_several_have_a_depth() -> None:
+    by, state = fitter(2), standing("hanging", "hanging", 0.0)
+    camera = by.drawings[1].camera
+    ray = by.line_of_sight(state, {1: 0.0})
+    assert ray is not None
+    np.testing.assert_allclose(np.linalg.norm(ray), 1.0)
+    away_m = state.root_m + camera.R.T @ camera.t_m
+    np.testing.assert_allclose(np.cross(ray, away_m), 0.0, atol=1e-9)
+    assert ray @ away_m > 0.0
+    assert by.line_of_sight(state, {0: 0.0, 1: 0.0}) is None

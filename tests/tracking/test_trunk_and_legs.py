@@ -58,6 +58,16 @@ def test_the_trunk_is_the_shirts_and_the_legs_point_as_the_clothes_show_them() -
         np.abs((in_world(both) * in_world(below)).sum(axis=1))[LOWER_BONES], 1.0
     )
     assert np.allclose(places(both)[INDEX["leftHand"]], places(shirt)[INDEX["leftHand"]])
+
+
+def test_along_the_line_of_sight_of_one_camera_the_body_is_where_the_whole_of_it_is() -> None:
+    below, shirt, ray = body(1), body(2), np.array([0.6, 0.0, 0.8])
+    both = join_bodies(below, upper_body_state(shirt, UPPER), ray)
+    moved_m = both.root_m - shirt.root_m
+    np.testing.assert_allclose(ray @ both.root_m, ray @ below.root_m)
+    np.testing.assert_allclose(np.cross(moved_m, ray), 0.0, atol=1e-12)
+    hand = INDEX["leftHand"]
+    np.testing.assert_allclose(places(both)[hand] - places(shirt)[hand], moved_m)
     for first, last in (
         ("neck", "head"),
         ("leftUpperLeg", "leftFoot"),

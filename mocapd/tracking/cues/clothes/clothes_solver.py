@@ -216,7 +216,7 @@ class ClothesSolver:
             p.start.iterations if is_new else p.guided_iterations - self.work.fewer_iterations
         )
         dt_s = NEW_BODY_PRIOR_S if is_new else dt_s
-        trunk_prior = self._trunk_prior(state, dt_s)
+        trunk_prior = self._trunk_prior(state, start, dt_s)
         if not cameras.has_appearance:
             cameras.mark_body(start)
             cameras.renew_before(self.searches_everywhere(ticks))
@@ -317,21 +317,23 @@ class ClothesSolver:
             self.model, last, fit.state, confirmed, dt_s, columns, self.params.velocity
         )
 
-    def _trunk_prior(self, state: TrackState, dt_s: float) -> Floats:
-        """Information (n_pose,n_pose) of a prediction whose trunk and arms come from the shirt."""
-        diagonal = np.zeros(self.model.n_pose)
-        diagonal[:3] = self.params.guided_sd_m**-2
-        diagonal[3 : upper_body().n_pose] = self.params.guided_sd_rad**-2
+    def _trunk_prior(self, state: TrackState, start: MotionState, dt_s: float) -> Floats:
+        """Information (n_pose,n_pose) of a prediction whose trunk and arms, in `start`, come from the shirt."""
+        p, diagonal = self.params, np.zeros(self.model.n_pose)
+        diagonal[:3] = p.guided_sd_m**-2
+        diagonal[3 : upper_body().n_pose] = p.guided_sd_rad**-2
+        guided = np.diag(diagonal)
+        ray = self.fitter.line_of_sight(start, self.cameras.present)
+        if ray is not None:
+            guided[:3, :3] += (p.guided_depth_sd_m**-2 - p.guided_sd_m**-2) * np.outer(ray, ray)
         if state.whole is None:
-            return np.diag(
-                diagonal + 1.0 / (self.fitter.prediction_sd**2 * max(dt_s / TICK_S, 0.5))
-            )
-        p = self.params
+            frames = max(dt_s / TICK_S, 0.5)
+            return guided + np.diag(1.0 / (self.fitter.prediction_sd**2 * frames))
         by_trunk = dict.fromkeys(SIDES, 1.0)  # the arms are where the shirt placed them
         motion = prediction_prior(
             self.fitter, state.whole, state.motion.velocity, dt_s, by_trunk, 1.0, p.motion
         )
-        return np.asarray(motion + np.diag(diagonal))
+        return np.asarray(motion + guided)
 
 
 def _is_plausible(fit: Fit, params: ClothesParams) -> bool:

@@ -13,7 +13,8 @@ class ShapeLearningParams:
     """When and how fast the body shape is learned while tracking."""
 
     learn: bool = True
-    gain: float = 0.6  # weight of a frame's information: errors of successive frames are correlated
+    # weight of a frame's information, for later frames: calm early ones say more than those that follow
+    gain: float = 1.2
     learning_s: float = 6.0  # proportions settle over the first seconds of good tracking
     least_match: float = 0.7  # match of a frame from which it is learned
 
