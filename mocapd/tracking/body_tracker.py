@@ -273,9 +273,8 @@ class BodyTracker:
         """Combines trunk and arms of the shirt with legs and head of the clothes."""
         assert self._shirt is not None
         clothes = self._clothes
-        start, lower, ray = replace_upper_body(predicted, trunk.motion), None, None
+        start, lower = replace_upper_body(predicted, trunk.motion), None
         if clothes is not None:
-            ray = clothes.fitter.line_of_sight(start, clothes.cameras.present)
             lower = clothes.fit_lower_body(state, start, observed, dt_s, self.probe)
             self._update_clothes_trust(lower, t_ns, len(clothes.cameras.present))
         names, changed = self._shirt.names(trunk.views), tuple(f"{s}_arm" for s in trunk.jumped)
@@ -285,7 +284,7 @@ class BodyTracker:
             whole, whole_ns = state.whole if is_recent else None, state.whole_ns
             since_ns = state.legs_since_ns if whole is not None else None
         else:
-            motion = join_bodies(lower.motion, trunk.motion, ray)
+            motion = join_bodies(lower.motion, trunk.motion, lower.line_of_sight)
             whole, whole_ns = lower.fit, t_ns
             since_ns = t_ns if state.legs_since_ns is None else state.legs_since_ns
             names, changed = (*names, *lower.cameras), (*changed, *lower.changed)

@@ -62,7 +62,8 @@ class ClothesObservation:
 @dataclass(frozen=True, slots=True, eq=False)
 class ClothesEstimate:
     """A whole body fitted to the clothes; cameras: those that show it; changed: parts found away from their prediction;
-    off_keypoints_m (J,): of the joints from their keypoints [m], None in a frame set without these."""
+    off_keypoints_m (J,): of the joints from their keypoints [m], None in a frame set without these; line_of_sight (3,): of the
+    only camera, along which legs and head moved the trunk of the shirt."""
 
     fit: Fit
     motion: MotionState
@@ -70,6 +71,7 @@ class ClothesEstimate:
     cameras: tuple[str, ...]
     changed: tuple[str, ...] = ()
     off_keypoints_m: Floats | None = None
+    line_of_sight: Floats | None = None
 
 
 class ClothesSolver:
@@ -216,12 +218,13 @@ class ClothesSolver:
             p.start.iterations if is_new else p.guided_iterations - self.work.fewer_iterations
         )
         dt_s = NEW_BODY_PRIOR_S if is_new else dt_s
-        trunk_prior = self._trunk_prior(state, start, dt_s)
+        ray = self.fitter.line_of_sight(start, cameras.present)
+        trunk_prior = self._trunk_prior(state, ray, dt_s)
         if not cameras.has_appearance:
             cameras.mark_body(start)
             cameras.renew_before(self.searches_everywhere(ticks))
             found = self.first_legs.find(start, dt_s, trunk_prior, iterations, is_new, ticks)
-            return None if found is None else self._estimate(found, last, dt_s)
+            return None if found is None else self._estimate(found, last, dt_s, ray=ray)
         if observed is None:
             views, rays = cameras.prepare(start, self.searches_everywhere(ticks), no_detection)
             observed = ClothesObservation(start, views, self.terms.joints.term(self.model, rays))
@@ -249,7 +252,7 @@ class ClothesSolver:
         best = self._hypotheses.improve(
             ScoredFit(fit, observed.views, terms), at, self._tests_hypotheses(ticks), probe
         )
-        return self._estimate(best, last, dt_s, pictures.t_ns, observed.joints)
+        return self._estimate(best, last, dt_s, pictures.t_ns, observed.joints, ray)
 
     def start_from(
         self, body: MotionState, pictures: Pictures, ticks: Ticks
@@ -285,6 +288,7 @@ class ClothesSolver:
         dt_s: float,
         t_ns: int | None = None,
         keypoints: Sequence[JointTerm] = (),
+        ray: Floats | None = None,
     ) -> ClothesEstimate | None:
         fit, changed = scored.fit, scored.changed
         if not _is_plausible(fit, self.params):
@@ -298,7 +302,7 @@ class ClothesSolver:
         motion, views = replace(fit.state, velocity=velocity), tuple(scored.views)
         off_keypoints_m = keypoints[0].off_keypoints_m(joints_m) if keypoints else None
         return ClothesEstimate(
-            fit, motion, views, self.cameras.names(views), changed, off_keypoints_m
+            fit, motion, views, self.cameras.names(views), changed, off_keypoints_m, ray
         )
 
     def _velocity(
@@ -317,13 +321,12 @@ class ClothesSolver:
             self.model, last, fit.state, confirmed, dt_s, columns, self.params.velocity
         )
 
-    def _trunk_prior(self, state: TrackState, start: MotionState, dt_s: float) -> Floats:
-        """Information (n_pose,n_pose) of a prediction whose trunk and arms, in `start`, come from the shirt."""
+    def _trunk_prior(self, state: TrackState, ray: Floats | None, dt_s: float) -> Floats:
+        """Information (n_pose,n_pose) of a prediction whose trunk and arms come from the shirt; ray: the line of sight."""
         p, diagonal = self.params, np.zeros(self.model.n_pose)
         diagonal[:3] = p.guided_sd_m**-2
         diagonal[3 : upper_body().n_pose] = p.guided_sd_rad**-2
         guided = np.diag(diagonal)
-        ray = self.fitter.line_of_sight(start, self.cameras.present)
         if ray is not None:
             guided[:3, :3] += (p.guided_depth_sd_m**-2 - p.guided_sd_m**-2) * np.outer(ray, ray)
         if state.whole is None:
