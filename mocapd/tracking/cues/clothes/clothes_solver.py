@@ -62,8 +62,8 @@ class ClothesObservation:
 @dataclass(frozen=True, slots=True, eq=False)
 class ClothesEstimate:
     """A whole body fitted to the clothes; cameras: those that show it; changed: parts found away from their prediction;
-    off_keypoints_m (J,): of the joints from their keypoints [m], None in a frame set without these; line_of_sight (3,): of the
-    only camera, along which legs and head moved the trunk of the shirt."""
+    off_keypoints_m (J,): of the joints from their keypoints [m], None in a frame set without these;
+    line_of_sight (3,): of the only camera, along which legs and head moved the trunk of the shirt."""
 
     fit: Fit
     motion: MotionState
