@@ -8,6 +8,7 @@ import numpy as np
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import SIDES, full_body, upper_body
 from mocapd.body.skeleton import INDEX
+from mocapd.clock import nanoseconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
@@ -218,13 +219,15 @@ class ClothesSolver:
             p.start.iterations if is_new else p.guided_iterations - self.work.fewer_iterations
         )
         dt_s = NEW_BODY_PRIOR_S if is_new else dt_s
-        ray = self.fitter.line_of_sight(start, cameras.present)
+        ray, found_ns = None, state.legs_since_ns
+        if found_ns is not None and pictures.t_ns - found_ns > nanoseconds(p.guided_joint_after_s):
+            ray = self.fitter.line_of_sight(start, cameras.present)  # new legs may be wrong
         trunk_prior = self._trunk_prior(state, ray, dt_s)
         if not cameras.has_appearance:
             cameras.mark_body(start)
             cameras.renew_before(self.searches_everywhere(ticks))
             found = self.first_legs.find(start, dt_s, trunk_prior, iterations, is_new, ticks)
-            return None if found is None else self._estimate(found, last, dt_s, ray=ray)
+            return None if found is None else self._estimate(found, last, dt_s)
         if observed is None:
             views, rays = cameras.prepare(start, self.searches_everywhere(ticks), no_detection)
             observed = ClothesObservation(start, views, self.terms.joints.term(self.model, rays))
