@@ -16,7 +16,7 @@ from mocapd.fit.priors.tilt_kernels import set_upright
 
 Array = NDArray[np.float64]
 
-_FREE = 1e-3  # information of a free pose, for what nothing observes
+FREE_POSE = 1e-3  # information of a free pose, for what nothing observes
 
 
 class PosePriors(NamedTuple):
@@ -37,7 +37,7 @@ def _shape_step(
     """The step of the factors where the pose is free: eliminated from A (P,P), g (P,), as in `free_shape_information`."""
     free, factors = A.copy(), g.copy()
     for p in range(n_pose):
-        free[p, p] += _FREE
+        free[p, p] += FREE_POSE
     for i in range(len(shape_offset)):
         for j in range(len(shape_offset)):
             free[n_pose + i, n_pose + j] += shape_information[i, j]

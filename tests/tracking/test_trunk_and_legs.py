@@ -58,6 +58,13 @@ def test_the_trunk_is_the_shirts_and_the_legs_point_as_the_clothes_show_them() -
         np.abs((in_world(both) * in_world(below)).sum(axis=1))[LOWER_BONES], 1.0
     )
     assert np.allclose(places(both)[INDEX["leftHand"]], places(shirt)[INDEX["leftHand"]])
+    for first, last in (
+        ("neck", "head"),
+        ("leftUpperLeg", "leftFoot"),
+        ("rightUpperLeg", "rightToes"),
+    ):
+        a, b = INDEX[first], INDEX[last]
+        assert np.allclose(places(both)[b] - places(both)[a], places(below)[b] - places(below)[a])
 
 
 def test_along_the_line_of_sight_of_one_camera_the_body_is_where_the_whole_of_it_is() -> None:
@@ -68,13 +75,6 @@ def test_along_the_line_of_sight_of_one_camera_the_body_is_where_the_whole_of_it
     np.testing.assert_allclose(np.cross(moved_m, ray), 0.0, atol=1e-12)
     hand = INDEX["leftHand"]
     np.testing.assert_allclose(places(both)[hand] - places(shirt)[hand], moved_m)
-    for first, last in (
-        ("neck", "head"),
-        ("leftUpperLeg", "leftFoot"),
-        ("rightUpperLeg", "rightToes"),
-    ):
-        a, b = INDEX[first], INDEX[last]
-        assert np.allclose(places(both)[b] - places(both)[a], places(below)[b] - places(below)[a])
 
 
 def test_velocity_and_proportions_are_of_who_sees_them() -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mocapd.clock import nanoseconds, seconds
+from mocapd.clock import seconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
@@ -20,7 +20,7 @@ from mocapd.tracking.cues.clothes.clothes_solver import (
     ClothesObservation,
     ClothesSolver,
 )
-from mocapd.tracking.cues.clothes.leg_schedule import LegSchedule
+from mocapd.tracking.cues.clothes.leg_schedule import LegSchedule, are_new_legs
 from mocapd.tracking.cues.keypoints.delayed_keypoints import DelayedKeypoints
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
@@ -121,7 +121,7 @@ class ClothesCue:
             return None
         if (
             shirt_carries
-            and not self._are_new(t_ns, legs_since_ns)
+            and not are_new_legs(t_ns, legs_since_ns, self.params)
             and self._legs.rests(self._ticks.last, self._solver.work.legs)
         ):
             self.legs_rest = True
@@ -143,7 +143,7 @@ class ClothesCue:
         """Detects keypoints about a body that the shirt carries in this frame set, at t_ns, for the next fit of its legs."""
         if not self._knows_look:
             return
-        cameras = self._detecting(self._are_new(t_ns, legs_since_ns))
+        cameras = self._detecting(are_new_legs(t_ns, legs_since_ns, self.params))
         if cameras:
             self._delayed.detect(self.fitter, body, t_ns, self.cameras, cameras)
 
@@ -162,11 +162,6 @@ class ClothesCue:
     def _knows_look(self) -> bool:
         """True if each present camera has a background and an appearance model."""
         return not self.cameras.are_new and self.cameras.has_appearance
-
-    def _are_new(self, t_ns: int, legs_since_ns: int | None) -> bool:
-        """True if the legs were found a moment ago."""
-        lasts_ns = nanoseconds(self.params.guided_joint_after_s)
-        return legs_since_ns is None or t_ns - legs_since_ns <= lasts_ns
 
     def fit_whole_body(
         self,

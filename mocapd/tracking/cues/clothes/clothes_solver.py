@@ -8,7 +8,6 @@ import numpy as np
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import SIDES, full_body, upper_body
 from mocapd.body.skeleton import INDEX
-from mocapd.clock import nanoseconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
@@ -25,6 +24,7 @@ from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.confirmed_arms import confirmed_arms
 from mocapd.tracking.cues.clothes.first_legs import FirstLegs
+from mocapd.tracking.cues.clothes.leg_schedule import are_new_legs
 from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
 from mocapd.tracking.cues.clothes.region_merge import RegionSolverCache
 from mocapd.tracking.cues.clothes.regions import Region, silhouette_labels
@@ -219,9 +219,9 @@ class ClothesSolver:
             p.start.iterations if is_new else p.guided_iterations - self.work.fewer_iterations
         )
         dt_s = NEW_BODY_PRIOR_S if is_new else dt_s
-        ray, found_ns = None, state.legs_since_ns
-        if found_ns is not None and pictures.t_ns - found_ns > nanoseconds(p.guided_joint_after_s):
-            ray = self.fitter.line_of_sight(start, cameras.present)  # new legs may be wrong
+        ray = None
+        if not are_new_legs(pictures.t_ns, state.legs_since_ns, p):  # which may be wrong
+            ray = self.fitter.line_of_sight(start, cameras.present)
         trunk_prior = self._trunk_prior(state, ray, dt_s)
         if not cameras.has_appearance:
             cameras.mark_body(start)

@@ -14,7 +14,9 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
+from mocapd.clock import nanoseconds
 from mocapd.fit.fit_params import TICK_S
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.types import Floats
 
 _CALM_M_S = 0.45  # knees, ankles and head that are no faster
@@ -62,3 +64,8 @@ class LegSchedule:
     def turn(self, frame_index: int) -> int:
         """A running number for work that takes turns, of which legs that rest leave none out."""
         return frame_index // 2 if self._is_calm else frame_index
+
+
+def are_new_legs(t_ns: int, since_ns: int | None, params: ClothesParams) -> bool:
+    """True if the legs were found a moment ago, at since_ns; None: not yet."""
+    return since_ns is None or t_ns - since_ns <= nanoseconds(params.guided_joint_after_s)

@@ -13,7 +13,7 @@ class ShapeLearningParams:
     """When and how fast the body shape is learned while tracking."""
 
     learn: bool = True
-    # weight of a frame's information, for later frames: calm early ones say more than those that follow
+    # weight of a frame's information for later frames, by measurement: docs/decisions/shirt-tracker.md
     gain: float = 1.2
     learning_s: float = 6.0  # proportions settle over the first seconds of good tracking
     least_match: float = 0.7  # match of a frame from which it is learned
