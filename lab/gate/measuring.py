@@ -17,7 +17,7 @@ from mocapd.evaluate.capture_eval import BuildTracker
 from mocapd.evaluate.recovery import recovery
 from mocapd.session.offline import RecordedTrack, track_all
 from mocapd.tracking.base import Probe, Track, Tracker, no_probe
-from mocapd.types import BodyState, FrameSet
+from mocapd.types import BodyState, FrameSet, Rig
 
 STEP_M = 1e-4  # between the statures of two runs
 
@@ -30,7 +30,7 @@ def measure(
     on_run: Callable[[int], None],
 ) -> GateRow:
     """`stature_m`: for recordings that do not say [m]; `on_run`: is given how many runs are done."""
-    known = from_capture(one.case.folder).assuming(stature_m)
+    known = _seen_by(one.camera, from_capture(one.case.folder).assuming(stature_m))
     found: dict[str, list[float]] = {}
     for run in range(runs if one.by_chance else 1):
         figures = _figures(one, build, _nudged(known, run))
@@ -39,6 +39,14 @@ def measure(
         on_run(run + 1)
     ordered = {name: found[name] for name in NAMES if name in found}
     return GateRow(set_name=one.set_name, name=one.name, joints=one.joints, runs=ordered)
+
+
+def _seen_by(camera: int | None, known: Calibration) -> Calibration:
+    """With this camera alone, or as it is."""
+    if camera is None:
+        return known
+    assert known.rig is not None  # of a capture
+    return replace(known, rig=Rig((known.rig.cameras[camera],)))
 
 
 def _nudged(known: Calibration, run: int) -> Calibration:
@@ -70,9 +78,14 @@ class _Timed:
 
 
 def _figures(one: GateCase, build: BuildTracker, known: Calibration) -> Figures:
-    ready = build(known)
+    assert known.rig is not None  # of a capture
+    ready, used = build(known), {camera.name for camera in known.rig.cameras}
     timed = _Timed(ready.tracker)
-    track = track_all(timed, ready.shape, frame_sets(one.case.folder), lambda _: None)
+    seen = (
+        replace(frames, frames={name: f for name, f in frames.frames.items() if name in used})
+        for frames in frame_sets(one.case.folder)
+    )
+    track = track_all(timed, ready.shape, seen, lambda _: None)
     return replace(
         _scored(one, track),
         step_ms=float(np.median(timed.step_ms)),

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from lab.simulated import recorded_set
@@ -13,20 +13,23 @@ from mocapd.evaluate.capture_eval import Case, open_case
 from mocapd.session.tracker_setup import Progress
 
 _KEY = re.compile(r"-[0-9a-f]{12}$")
-SETS = ("dev", "shirt", "plain", "rings", "failures", "interruptions", "rest")
+SETS = ("dev", "shirt", "one_camera", "plain", "rings", "failures", "interruptions", "rest")
+_NO_SHIRT = ("plain", "striped")  # in the name of a capture
 _SCORED_WHOLE = ("stereo_", "ring4_")  # captures of the whole body
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GateCase:
     """One recording of a set. joints: which are scored; by_chance: whether runs that hardly differ end apart, so that it
-    is tracked several times; still_from_s: from then on nobody moves, None for a recording of motion."""
+    is tracked several times; still_from_s: from then on nobody moves, None for a recording of motion; camera: the index
+    of the only one that is used, None for all."""
 
     set_name: str
     case: Case
     joints: str
     by_chance: bool = True
     still_from_s: float | None = None
+    camera: int | None = None
 
     @property
     def name(self) -> str:
@@ -42,6 +45,7 @@ def cases_of(
     makers: dict[str, Callable[[], Iterator[GateCase]]] = {
         "dev": lambda: _dev(captures),
         "shirt": lambda: _simulated("shirt", recorded_set.planned(clips), cache_dir, progress),
+        "one_camera": lambda: _one_camera(captures, clips, cache_dir, progress),
         "plain": lambda: _simulated(
             "plain", recorded_set.planned(clips, "plain"), cache_dir, progress
         ),
@@ -69,6 +73,19 @@ def _dev(captures: Path) -> Iterator[GateCase]:
     for folder in folders:
         joints = "full" if folder.name.startswith(_SCORED_WHOLE) else "upper"
         yield GateCase("dev", open_case(folder), joints)
+
+
+def _one_camera(
+    captures: Path, clips: Path, cache_dir: Path, progress: Progress
+) -> Iterator[GateCase]:
+    """Everybody in the shirt, by the cameras in turn: those of a recording see much the same of it."""
+    shirts = [
+        *(one for one in _dev(captures) if not any(word in one.name for word in _NO_SHIRT)),
+        *_simulated("shirt", recorded_set.planned(clips), cache_dir, progress),
+    ]
+    for number, one in enumerate(shirts):
+        camera = number % len(one.case.folder.cameras)
+        yield replace(one, set_name="one_camera", camera=camera, by_chance=True)
 
 
 def _simulated(

@@ -219,6 +219,7 @@ class BodyTracker:
                 t_ns,
                 self._ticks.now.frame_index,
                 self._shirt_trust.trusted,
+                () if observed is None else observed.joints,
                 self.probe,
             )
             if locator.has_searched:

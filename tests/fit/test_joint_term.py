@@ -72,6 +72,23 @@ def test_what_each_joint_costs_adds_up_to_the_cost() -> None:
     assert np.flatnonzero(costs).tolist() == sorted(lower.tolist())
 
 
+def test_depths_alone_say_nothing_across_the_view_and_nothing_of_other_joints() -> None:
+    local, hand = bent(), INDEX["leftHand"]
+    joints_m = posed(ROOT, local).joints
+    term = JointTerm(BODY, seen_at(joints_m, 0.05)[:1]).depths(BODY, [hand], 2.0)
+    (rays,) = term.rays
+    assert rays.joints.tolist() == [hand]
+    deeper_m = np.zeros_like(joints_m)
+    deeper_m[hand] = 0.1 * rays.camera.R[2]
+    across_m = np.zeros_like(joints_m)
+    across_m[hand] = 0.1 * rays.camera.R[0]
+    cost = term.costs(joints_m)
+    assert np.flatnonzero(cost).tolist() == [hand]
+    assert term.costs(joints_m + across_m)[hand] == pytest.approx(cost[hand])
+    assert term.costs(joints_m + deeper_m)[hand] != pytest.approx(cost[hand], rel=0.1)
+    assert system(term, ROOT, local)[0] == pytest.approx(cost[hand])
+
+
 def test_a_body_goes_to_where_its_joints_were_seen() -> None:
     local = relaxed()
     raised = local.copy()

@@ -33,8 +33,8 @@ def pull_at_joints(
     """Add two rows for each joint of `seen` (N,) that pull it to the ray xy (N,2), and one to its depth beside the hips',
     farther_m (N,); the robust cost (Geman-McClure).
 
-    information (N,3): xx, xy, yy across the ray [1/m^2]; depth_information (N,); weights: of the cost, how many standard
-    deviations leave a quarter of the weight, and of depth beside place.
+    information (N,3): xx, xy, yy across the ray [1/m^2]; depth_information (N,); weights: of places, how many standard
+    deviations leave a quarter of the weight, and of depths.
     """
     weight, robust2, depth_weight = weights[0], weights[1] * weights[1], weights[2]
     joints = posed[2]
@@ -80,8 +80,8 @@ def pull_at_joints(
         joint_row(joint, camera_R[2], articulation, posed, rows[0])
         for q in range(3):
             rows[0, q] = 0.0  # hips and joint move together
-        add_row(rows[0], off, depth_weight * weight * depth_information[n] * trust * trust, H, b)
-        cost += depth_weight * weight * m2 * trust
+        add_row(rows[0], off, depth_weight * depth_information[n] * trust * trust, H, b)
+        cost += depth_weight * m2 * trust
     return cost
 
 

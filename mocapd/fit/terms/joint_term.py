@@ -6,7 +6,7 @@ a foot points. Rays with an outlier's weight do not turn one that points the wro
 where rays cross does, wherever the foot stands.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -32,9 +32,9 @@ _TRUNK = [(INDEX["left" + j], INDEX["right" + j]) for j in ("UpperArm", "UpperLe
 class JointTermParams:
     """Weights of the keypoints. Their errors are correlated between neighbouring cameras and in time."""
 
-    weight: float = 4.0  # of a squared Mahalanobis distance [disagreeing pixels]
+    weight: float = 4.0  # of a squared Mahalanobis distance across the ray [disagreeing pixels]
     robust: float = 3.0  # standard deviations at which a joint has a quarter of its weight
-    depth_weight: float = 0.5  # of its depth relative to its place
+    depth_weight: float = 2.0  # the same of a depth
     heading_information: float = 5000.0  # of toes beside their ankle [disagreeing pixels/m^2]
     heading_sd_m: float = 0.12  # of both, at most: adjacent cameras hardly see depth
 
@@ -54,6 +54,14 @@ class JointRays:
     farther_m: Floats
     depth_information: Floats
 
+    def of(self, joints: Collection[int]) -> "JointRays":
+        """Those of these joints."""
+        is_one = np.isin(self.joints, list(joints))
+        return JointRays(
+            self.camera, self.joints[is_one], self.xy[is_one], self.information[is_one], self.farther_m[is_one],
+            self.depth_information[is_one],
+        )  # fmt: skip
+
 
 class JointTerm:
     """All cameras' keypoints of one body in one frame set, a `Term`."""
@@ -71,12 +79,17 @@ class JointTerm:
         """The same without outlier rejection, for a distant pose."""
         return JointTerm(self._model, self.rays, replace(self._params, robust=1e6))
 
+    def depths(self, model: BodyModel, joints: Collection[int], weight: float) -> "JointTerm":
+        """The depths alone of these joints, as a term of `model`."""
+        params = replace(self._params, weight=0.0, depth_weight=weight)
+        return JointTerm(model, [rays.of(joints) for rays in self.rays], params)
+
     def costs(self, joints_m: Floats) -> Floats:
         """Cost of each joint (J,) of a body at joints_m (J,3)."""
         p, out = self._params, np.zeros(len(joints_m))
         for rays in self.rays:
             place2, depth2 = _mahalanobis2(rays, joints_m)
-            for m2, weight in ((place2, p.weight), (depth2, p.weight * p.depth_weight)):
+            for m2, weight in ((place2, p.weight), (depth2, p.depth_weight)):
                 out[rays.joints] += weight * m2 / (1.0 + m2 / p.robust**2)
         return out
 

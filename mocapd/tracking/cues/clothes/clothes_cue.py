@@ -8,6 +8,7 @@ import numpy as np
 
 from mocapd.clock import seconds
 from mocapd.each import Each, in_turn
+from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays
@@ -114,7 +115,7 @@ class ClothesCue:
         legs rest, see `legs_rest`.
 
         shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then of the frame set before, detected
-        less often, by half of the cameras at once, and not for new legs that silhouettes found.
+        less often, by half of the cameras at once, and not for new legs that silhouettes found, but for a single camera.
         """
         self.legs_rest = False
         if not self._knows_look:
@@ -150,6 +151,8 @@ class ClothesCue:
     def _detecting(self, is_new: bool) -> Sequence[int]:
         """The cameras whose keypoints are detected now below the shirt; is_new: the legs were found a moment ago."""
         present, work = self.cameras.present, self._solver.work
+        if not self.alone:  # nothing else says how far away the arms are
+            return self._legs.keypoints.take(present, self._ticks.last, TICK_S * work.network)
         if is_new and not self._solver.first_legs.by_keypoints:
             return ()
         if not is_new and self._legs.rests(self._ticks.last + 1, work.legs):

@@ -187,7 +187,7 @@ class ClothesParams:
     guided_look_s: float = 4 / 30  # between two updates of one camera's appearance model
     guided_joint_after_s: float = 1.0  # since the legs were found by silhouettes
     guided_sd_m: float = 0.01
-    guided_depth_sd_m: float = 0.03  # along the line of sight of a single camera
+    guided_depth_sd_m: float = 0.015  # along the line of sight of a single camera
     guided_sd_rad: float = 0.03
 
     # the first legs below a trunk from the shirt

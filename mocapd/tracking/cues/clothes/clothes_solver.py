@@ -24,7 +24,6 @@ from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.confirmed_arms import confirmed_arms
 from mocapd.tracking.cues.clothes.first_legs import FirstLegs
-from mocapd.tracking.cues.clothes.leg_schedule import are_new_legs
 from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
 from mocapd.tracking.cues.clothes.region_merge import RegionSolverCache
 from mocapd.tracking.cues.clothes.regions import Region, silhouette_labels
@@ -219,9 +218,7 @@ class ClothesSolver:
             p.start.iterations if is_new else p.guided_iterations - self.work.fewer_iterations
         )
         dt_s = NEW_BODY_PRIOR_S if is_new else dt_s
-        ray = None
-        if not are_new_legs(pictures.t_ns, state.legs_since_ns, p):  # which may be wrong
-            ray = self.fitter.line_of_sight(start, cameras.present)
+        ray = self.fitter.line_of_sight(start, cameras.present)
         trunk_prior = self._trunk_prior(state, ray, dt_s)
         if not cameras.has_appearance:
             cameras.mark_body(start)

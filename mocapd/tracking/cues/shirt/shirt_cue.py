@@ -7,6 +7,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel, build_model
 from mocapd.body.pose_space import SIDES
+from mocapd.body.skeleton import INDEX
 from mocapd.clock import nanoseconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import TICK_S
@@ -15,6 +16,8 @@ from mocapd.fit.idmap_renderer import Roi, image_scales
 from mocapd.fit.limbs.arm_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.garment import confirmed_colours, shirt_labels
@@ -39,6 +42,7 @@ from mocapd.tracking.velocity import velocity_between
 from mocapd.types import Bytes, Floats, Rig
 from mocapd.vision.room_background import RoomBackground
 
+_ARMS = [INDEX[side + bone] for side in SIDES for bone in ("UpperArm", "LowerArm", "Hand")]
 _LONGEST_TICKS = 8  # after a pause no more is learned from a frame set than after so many
 
 
@@ -119,12 +123,13 @@ class ShirtCue:
         predicted: MotionState,
         dt_s: float,
         present: dict[int, float],
+        keypoints: Sequence[JointTerm],
         frame_index: int,
         probe: Probe,
     ) -> ShirtEstimate | None:
         """Tracks trunk and arms from the previous state; None if the shirt is not visible there.
 
-        predicted: the whole body, dt_s after `previous`.
+        predicted: the whole body, dt_s after `previous`, with its keypoints.
         """
         p, fitter, last = self.params, self.fitter, previous.trunk
         assert last is not None
@@ -142,9 +147,11 @@ class ShirtCue:
         motion = prediction_prior(
             fitter, last, start.velocity, dt_s, last.confirmed_arms, p.limbs.uncertain_arm, p.motion
         )
-        terms = stereo_distance_terms(
+        terms: tuple[Term, ...] = stereo_distance_terms(
             fitter, start, views, self._pictures.grey, frame_index, p.distances
         )
+        if len(present) == 1:  # patches hardly say how far away an arm is
+            terms += tuple(one.depths(self.model, _ARMS, p.arm_depths) for one in keypoints)
         fit = fitter.fit(
             start, views, dt_s, p.fit.iterations - self.work.fewer_iterations, learning, rendered=True,
             fine=min(self.work.fine, p.fit.fine_iterations), motion=motion, terms=terms,

@@ -1,5 +1,6 @@
 """Locates the shirt in a frame set: on the body that it carries, on a body that clothes carry, or elsewhere."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from mocapd.body.model import BodyModel
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.motion_state import MotionState, predict_state
+from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtEstimate
 from mocapd.tracking.track_state import BodyShapeEstimate, TrackState, t_pose_state
@@ -39,19 +41,20 @@ class ShirtLocator:
         t_ns: int,
         frame_index: int,
         is_trusted: bool,
+        keypoints: Sequence[JointTerm],
         probe: Probe,
     ) -> ShirtEstimate | None:
         """Trunk and arms from the shirt; None if it is not found. predicted: the body, dt_s after `state`; is_trusted:
-        the shirt was trusted a moment ago, so a failed fit is repeated at once."""
+        the shirt was trusted a moment ago, so a failed fit is repeated at once; keypoints: of the body."""
         p, cue = self._params, self._cue
         self.has_searched = True
         if state.trunk is not None:
-            found = cue.follow(state, predicted, dt_s, present, frame_index, probe)
+            found = cue.follow(state, predicted, dt_s, present, keypoints, frame_index, probe)
         elif self.separate_track is not None:
             separate = self.separate_track
             dt_s = max(seconds(t_ns - separate.t_ns), 1e-3)
             extrapolated = predict_state(self._whole, separate.motion, dt_s, self._damping)
-            found = cue.follow(separate, extrapolated, dt_s, present, frame_index, probe)
+            found = cue.follow(separate, extrapolated, dt_s, present, (), frame_index, probe)
         elif t_ns < self._next_attempt_ns and not is_trusted:
             self.has_searched = False
             return None

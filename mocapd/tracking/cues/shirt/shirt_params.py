@@ -31,6 +31,8 @@ class ShirtParams:
     # points by the hundred share the errors of cloth and surface: together they count as three would alone
     distances: StereoMatchParams = field(default_factory=lambda: StereoMatchParams(sd_m=0.27))
 
+    arm_depths: float = 0.5  # weight of the keypoints' depths for arms before a single camera
+
     # motion from frame to frame
     velocity: VelocityParams = field(default_factory=VelocityParams)
 
