@@ -32,9 +32,15 @@ class PosePriors(NamedTuple):
 
 @njit(cache=True, nogil=True)
 def _shape_step(
-    A: Array, g: Array, n_pose: int, shape_offset: Array, shape_information: Array
+    A: Array,
+    g: Array,
+    n_pose: int,
+    shape_offset: Array,
+    shape_information: Array,
+    shape_room: Array,
 ) -> Array:
-    """The step of the factors where the pose is free: eliminated from A (P,P), g (P,), as in `free_shape_information`."""
+    """The step of the factors where the pose is free: eliminated from A (P,P), g (P,), as in `free_shape_information`; within
+    shape_room (2,n_shape)."""
     free, factors = A.copy(), g.copy()
     for p in range(n_pose):
         free[p, p] += FREE_POSE
@@ -43,7 +49,10 @@ def _shape_step(
             free[n_pose + i, n_pose + j] += shape_information[i, j]
             factors[n_pose + i] += shape_information[i, j] * shape_offset[j]
     solve_positive(free, factors)
-    return factors[n_pose:].copy()
+    step = factors[n_pose:].copy()
+    for i in range(len(step)):
+        step[i] = min(max(step[i], shape_room[0, i]), shape_room[1, i])
+    return step
 
 
 @njit(cache=True, nogil=True)
@@ -58,12 +67,14 @@ def gauss_newton_step(
     priors: PosePriors,
     shape_offset: Array,
     shape_information: Array,
+    shape_room: Array,
 ) -> Array:
     """The step (P,) that the normal equations of all terms lead to from the pose root (3,), local (J,4).
 
     H (P,P), b (P,) of the evidence, left as they are; of the P unknowns the first are the pose's.
     motion_information (n_pose,n_pose) holds the pose to start_root, start_local; shape_offset:
-    from the factors to what is known of them, with shape_information. It does not hold the pose while the factors are
+    from the factors to what is known of them, with shape_information; shape_room (2,n_shape): the least and the largest step
+    of each. Motion does not hold the pose while the factors are
     found: before one camera they would otherwise follow each wrong depth, and grow with it.
     """
     rest_local, rest_information, limits, limit_information, tilt_information = priors
@@ -81,7 +92,7 @@ def gauss_newton_step(
     set_upright(local[0], tilt_information, A, g)
     keep_in_limits(local, limits, limit_information, A, g)
     if n_pose < P:
-        shape_step = _shape_step(A, g, n_pose, shape_offset, shape_information)
+        shape_step = _shape_step(A, g, n_pose, shape_offset, shape_information, shape_room)
         for p in range(n_pose):
             for i in range(P - n_pose):
                 g[p] -= A[p, n_pose + i] * shape_step[i]

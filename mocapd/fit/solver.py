@@ -31,7 +31,10 @@ from mocapd.fit.view import View, coarse
 from mocapd.types import Camera, Floats
 
 _USUAL_HZ = 30.0  # spreads about a prediction are those of such a frame
-_FACTORS = 0.6, 1.6  # limits of human proportions
+_FACTORS_SDS, _FACTORS = (
+    3.0,
+    0.1,
+)  # limits of human proportions: so many standard deviations, and at least so much
 
 
 class Fitter:
@@ -57,6 +60,8 @@ class Fitter:
         self._id_maps = IdMapTerm(self.drawings, model, params, each)
         self._from_eyes_m = [camera.R.T @ camera.t_m for camera in cameras]
         self.prediction_sd = _prediction_sd(model, params)
+        most = np.maximum(_FACTORS_SDS * model.space.factor_sd, _FACTORS)
+        self._factor_limits = 1.0 + np.stack([-most, most])
         self._wide_baseline_prior, self._small_baseline_prior = (
             plain(wide_baseline_prior(model, params)),
             plain(small_baseline_prior(model, params)),
@@ -117,12 +122,10 @@ class Fitter:
                 measured += added if term.is_measured else 0.0
             step = gauss_newton_step(
                 held, pull, state.root_m, state.local_xyzw, prediction.root_m, prediction.local_xyzw,
-                motion, priors, prediction.factors - state.factors, shape_information,
+                motion, priors, prediction.factors - state.factors, shape_information, self._factor_limits - state.factors,
             )  # fmt: skip
             root_m, local_xyzw = apply_step(m, state.root_m, state.local_xyzw, step[:n_pose])
-            factors = (
-                np.clip(state.factors + step[n_pose:], *_FACTORS) if n_shape else state.factors
-            )
+            factors = state.factors + step[n_pose:] if n_shape else state.factors
             state = MotionState(root_m, local_xyzw, state.velocity, factors, state.information)
         counts = self._id_maps.counts(views)
         misplaced, in_depth, nearer_px = compared_depths(self.drawings, views, p)

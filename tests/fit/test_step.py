@@ -15,6 +15,7 @@ from tests.fit.synthetic import fitter, standing
 
 _NO_PIXEL = np.zeros((120, 160), np.uint8)
 NOTHING_SEEN = View(0, (80, 60, 240, 180), _NO_PIXEL, _NO_PIXEL, 0.0)  # nor denied
+WIDE = np.array([[-1.0], [1.0]])  # room for a step
 
 
 def leaning(pitch_rad: float, roll_rad: float, yaw_rad: float) -> MotionState:
@@ -61,11 +62,28 @@ def test_a_size_that_another_depth_explains_as_well_teaches_no_proportion() -> N
     H, b = 1e4 * rows.T @ rows, 1e4 * rows.T @ np.array([0.2, 0.05])
     step = gauss_newton_step(
         H, b, state.root_m, state.local_xyzw, state.root_m, state.local_xyzw, firm, priors,
-        np.zeros(model.n_shape), known,
+        np.zeros(model.n_shape), known, WIDE * np.ones((1, model.n_shape)),
     )  # fmt: skip
     torso, shoulders = step[model.n_pose : model.n_pose + 2]
     assert abs(torso) < 1e-3 < 0.04 < shoulders
     np.testing.assert_allclose(step[2], 0.2 * 1e4 / (1e4 + 1e3), rtol=0.01)
+
+
+def test_nobody_is_of_other_proportions_than_people_are() -> None:
+    model, state = fitter(1).model, standing("hanging", "hanging", 0.0)
+    priors, loose = plain(wide_baseline_prior(model, FitParams())), np.eye(model.n_pose)
+    rows = np.zeros((1, model.n_pose + model.n_shape))
+    rows[0, [2, model.n_pose]] = 1.0
+    H, b = 1e6 * rows.T @ rows, 1e6 * rows.T @ np.array([0.5])
+    certain = 1e9 * np.eye(model.n_shape)  # that the torso is longer by 0.4
+    offset = np.zeros(model.n_shape)
+    offset[0] = 0.4
+    step = gauss_newton_step(
+        H, b, state.root_m, state.local_xyzw, state.root_m, state.local_xyzw, loose, priors,
+        offset, certain, 0.1 * WIDE * np.ones((1, model.n_shape)),
+    )  # fmt: skip
+    np.testing.assert_allclose(step[model.n_pose], 0.1)
+    np.testing.assert_allclose(step[2], 0.4, rtol=0.01)  # the pose explains the rest
 
 
 def test_one_camera_has_a_line_of_sight_to_the_body_and_several_have_a_depth() -> None:
