@@ -78,7 +78,7 @@ def _dev(captures: Path) -> Iterator[GateCase]:
 def _one_camera(
     captures: Path, clips: Path, cache_dir: Path, progress: Progress
 ) -> Iterator[GateCase]:
-    """Everybody in the shirt, by the cameras in turn: those of a recording see much the same of it."""
+    """Everybody in the shirt as one camera sees him: the first, second, ... of a recording in turn."""
     shirts = [
         *(one for one in _dev(captures) if not any(word in one.name for word in _NO_SHIRT)),
         *_simulated("shirt", recorded_set.planned(clips), cache_dir, progress),

@@ -31,10 +31,8 @@ from mocapd.fit.view import View, coarse
 from mocapd.types import Camera, Floats
 
 _USUAL_HZ = 30.0  # spreads about a prediction are those of such a frame
-_FACTORS_SDS, _FACTORS = (
-    3.0,
-    0.1,
-)  # limits of human proportions: so many standard deviations, and at least so much
+# limits of human proportions
+_LIMIT_SDS, _LEAST_LIMIT = 3.0, 0.1
 
 
 class Fitter:
@@ -60,7 +58,7 @@ class Fitter:
         self._id_maps = IdMapTerm(self.drawings, model, params, each)
         self._from_eyes_m = [camera.R.T @ camera.t_m for camera in cameras]
         self.prediction_sd = _prediction_sd(model, params)
-        most = np.maximum(_FACTORS_SDS * model.space.factor_sd, _FACTORS)
+        most = np.maximum(_LIMIT_SDS * model.space.factor_sd, _LEAST_LIMIT)
         self._factor_limits = 1.0 + np.stack([-most, most])
         self._wide_baseline_prior, self._small_baseline_prior = (
             plain(wide_baseline_prior(model, params)),
