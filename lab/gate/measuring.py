@@ -9,15 +9,14 @@ import numpy as np
 from lab.gate.figures import NAMES, Figures, as_row, rest_figures, track_figures
 from lab.gate.gate_file import GateRow
 from lab.gate.sets import GateCase
+from lab.studies.fewer_cameras import calibration_of, frame_sets_for
 from mocapd.body.shape import BodyShape
 from mocapd.calibration.calibration_record import Calibration
-from mocapd.calibration.from_origin import from_capture
-from mocapd.capture.capture_folder import frame_sets
 from mocapd.evaluate.capture_eval import BuildTracker
 from mocapd.evaluate.recovery import recovery
 from mocapd.session.offline import RecordedTrack, track_all
 from mocapd.tracking.base import Probe, Track, Tracker, no_probe
-from mocapd.types import BodyState, FrameSet, Rig
+from mocapd.types import BodyState, FrameSet
 
 STEP_M = 1e-4  # between the statures of two runs
 
@@ -30,7 +29,7 @@ def measure(
     on_run: Callable[[int], None],
 ) -> GateRow:
     """`stature_m`: for recordings that do not say [m]; `on_run`: is given how many runs are done."""
-    known = _seen_by(one.camera, from_capture(one.case.folder).assuming(stature_m))
+    known = calibration_of(one.case, stature_m, lambda i, _: one.camera is None or i == one.camera)
     found: dict[str, list[float]] = {}
     for run in range(runs if one.by_chance else 1):
         figures = _figures(one, build, _nudged(known, run))
@@ -39,14 +38,6 @@ def measure(
         on_run(run + 1)
     ordered = {name: found[name] for name in NAMES if name in found}
     return GateRow(set_name=one.set_name, name=one.name, joints=one.joints, runs=ordered)
-
-
-def _seen_by(camera: int | None, known: Calibration) -> Calibration:
-    """With this camera alone, or as it is."""
-    if camera is None:
-        return known
-    assert known.rig is not None  # of a capture
-    return replace(known, rig=Rig((known.rig.cameras[camera],)))
 
 
 def _nudged(known: Calibration, run: int) -> Calibration:
@@ -78,14 +69,9 @@ class _Timed:
 
 
 def _figures(one: GateCase, build: BuildTracker, known: Calibration) -> Figures:
-    assert known.rig is not None  # of a capture
-    ready, used = build(known), {camera.name for camera in known.rig.cameras}
+    ready = build(known)
     timed = _Timed(ready.tracker)
-    seen = (
-        replace(frames, frames={name: f for name, f in frames.frames.items() if name in used})
-        for frames in frame_sets(one.case.folder)
-    )
-    track = track_all(timed, ready.shape, seen, lambda _: None)
+    track = track_all(timed, ready.shape, frame_sets_for(one.case, known), lambda _: None)
     return replace(
         _scored(one, track),
         step_ms=float(np.median(timed.step_ms)),

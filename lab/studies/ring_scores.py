@@ -1,17 +1,16 @@
 """The whole body before cameras all around, scored in a recording or in what is left of it without one camera."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.calibration.from_origin import from_capture
-from mocapd.capture.capture_folder import frame_sets
+from lab.studies.fewer_cameras import calibration_of, frame_sets_for
 from mocapd.evaluate.capture_eval import BuildTracker, Case
 from mocapd.evaluate.score import match, score
 from mocapd.evaluate.truth import Truth
 from mocapd.session.offline import RecordedTrack, track_all
-from mocapd.types import Floats, FrameSet, Rig
+from mocapd.types import Floats
 
 _LEG = ("UpperLeg", "LowerLeg", "Foot")
 _EXCHANGED_M = (
@@ -38,22 +37,15 @@ class RingScore:
 
 def ring_score(case: Case, left_out: str, build: BuildTracker, stature_m: float) -> RingScore:
     """Track a capture without one camera, or with all (""), and score the whole body."""
-    known = from_capture(case.folder).assuming(stature_m)
+    known = calibration_of(case, stature_m, lambda _, camera: camera.name != left_out)
     assert known.rig is not None  # of a capture
-    cameras = tuple(one for one in known.rig.cameras if one.name != left_out)
-    ready = build(replace(known, rig=Rig(cameras)))
-    frames = (_without(left_out, one) for one in frame_sets(case.folder))
-    track = track_all(ready.tracker, ready.shape, frames, _nothing)
+    ready = build(known)
+    track = track_all(ready.tracker, ready.shape, frame_sets_for(case, known), _nothing)
     of = score(case.truth, track, "full")
     return RingScore(
-        case.name, len(cameras), left_out, of.coverage, of.rms_cm, of.median_cm, of.joint_angle_deg, of.jitter_ratio,
-        of.step_error_p99_cm, exchanged_share(case.truth, track),
+        case.name, len(known.rig.cameras), left_out, of.coverage, of.rms_cm, of.median_cm, of.joint_angle_deg,
+        of.jitter_ratio, of.step_error_p99_cm, exchanged_share(case.truth, track),
     )  # fmt: skip
-
-
-def _without(camera: str, frames: FrameSet) -> FrameSet:
-    kept = {name: frame for name, frame in frames.frames.items() if name != camera}
-    return replace(frames, frames=kept)
 
 
 def _nothing(done: int) -> None:

@@ -74,8 +74,8 @@ def gauss_newton_step(
     H (P,P), b (P,) of the evidence, left as they are; of the P unknowns the first are the pose's.
     motion_information (n_pose,n_pose) holds the pose to start_root, start_local; shape_offset:
     from the factors to what is known of them, with shape_information; shape_room (2,n_shape): the least and the largest step
-    of each. Motion does not hold the pose while the factors are
-    found: before one camera they would otherwise follow each wrong depth, and grow with it.
+    of each. Motion does not hold the pose while the factors are found: before one camera they would otherwise follow each
+    wrong depth, and grow with it.
     """
     rest_local, rest_information, limits, limit_information, tilt_information = priors
     _, joint_of_group, share_of_joint, _, _ = limits

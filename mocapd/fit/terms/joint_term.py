@@ -185,10 +185,18 @@ class JointTerm:
                 (p.weight, p.robust, p.depth_weight), rays.camera.R, rays.camera.t_m, plain(m.articulation),
                 plain(posed), H, b,
             )  # fmt: skip
-        ankles, toes, apart_m = self._feet
-        cost += turn_level(
-            ankles, toes, apart_m, p.heading_information, plain(m.articulation), plain(posed), H, b
-        )
+        if len(self.rays) > 1:  # of one camera, none cross
+            ankles, toes, apart_m = self._feet
+            cost += turn_level(
+                ankles,
+                toes,
+                apart_m,
+                p.heading_information,
+                plain(m.articulation),
+                plain(posed),
+                H,
+                b,
+            )
         return cost
 
     @cached_property
