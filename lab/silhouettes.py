@@ -26,7 +26,7 @@ from mocapd.errors import ConfigError
 from mocapd.session.tracker_setup import cache_resources, ready_tracker
 from mocapd.tracking.base import Track
 from mocapd.tracking.body_tracker import BodyTracker
-from mocapd.tracking.cues.clothes.camera_views import CameraView
+from mocapd.tracking.cues.clothes.camera_view import CameraView
 from mocapd.types import Camera, Floats, Singles
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, CLOTH_OR_SHADOW, SHADOW, stands
 from mocapd.vision.hull.soft_carve import CERTAIN, carve_log_odds, voxel_centres

@@ -15,6 +15,7 @@ Quaternions are xyzw with w >= 0. Arrays are read-only by convention after const
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,21 +26,79 @@ Ints = NDArray[np.int64]
 Bytes = NDArray[np.uint8]
 
 
+class CompressedPicture(Protocol):
+    """A picture as the camera delivered it, decoded as far as somebody asks; see `JpegPicture`."""
+
+    @property
+    def encoded(self) -> bytes:
+        """The file."""
+        ...
+
+    @property
+    def size_px(self) -> tuple[int, int]:
+        """Width and height of the whole picture."""
+        ...
+
+    @property
+    def pixels(self) -> Bytes:
+        """The whole picture (h,w,3)."""
+        ...
+
+    @property
+    def grey(self) -> Bytes:
+        """The whole picture in grey (h,w)."""
+        ...
+
+    @property
+    def small(self) -> Bytes:
+        """The picture (h,w,3), averaged over blocks of `reduced_by` pixels each way."""
+        ...
+
+    @property
+    def reduced_by(self) -> int:
+        """Of `small`; 1 for the whole picture."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
     """One picture of one camera.
 
     `t_ns` is the best estimate of the middle of the exposure on CLOCK_MONOTONIC (for webcams: the
     driver's stamp), not the time of arrival. `seq` counts the source's frames; gaps are lost
-    frames. `pixels` (height, width, 3) uint8 BGR, C-contiguous, read-only. `encoded`: the JPEG that
-    they were decoded from, as the camera delivered it; None where it delivered none.
+    frames. `picture`: pixels (height, width, 3) uint8 BGR, C-contiguous, read-only, or what they are decoded from.
     """
 
     camera: str
     seq: int
     t_ns: int
-    pixels: Bytes
-    encoded: bytes | None = None
+    picture: Bytes | CompressedPicture
+
+    @property
+    def pixels(self) -> Bytes:
+        """The whole picture (h,w,3). May decode it: see `small`."""
+        return self.picture if isinstance(self.picture, np.ndarray) else self.picture.pixels
+
+    @property
+    def encoded(self) -> bytes | None:
+        """The JPEG as the camera delivered it; None where it delivered none."""
+        return None if isinstance(self.picture, np.ndarray) else self.picture.encoded
+
+    @property
+    def size_px(self) -> tuple[int, int]:
+        """Width and height of the whole picture."""
+        if not isinstance(self.picture, np.ndarray):
+            return self.picture.size_px
+        h, w = self.picture.shape[:2]
+        return w, h
+
+    def small(self, scale: int) -> tuple[Bytes, int]:
+        """The smallest picture at hand that can be averaged down to one `scale` times smaller, and by how much it is
+        smaller itself: a divisor of `scale`."""
+        if isinstance(self.picture, np.ndarray):
+            return self.picture, 1
+        by = self.picture.reduced_by
+        return (self.picture.small, by) if scale % by == 0 else (self.picture.pixels, 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -20,6 +20,11 @@ MOST_PIXELS = 40_000_000  # limit without an expected size: somewhat above 8K
 MOST_DRAWN_PIXELS = 3840 * 2160  # of a picture that a person drew strokes on, and of the strokes
 MOST_FILE_BYTES = 64 << 20
 
+REDUCTIONS = {
+    1: cv2.IMREAD_COLOR, 2: cv2.IMREAD_REDUCED_COLOR_2, 4: cv2.IMREAD_REDUCED_COLOR_4, 8: cv2.IMREAD_REDUCED_COLOR_8,
+}  # fmt: skip
+"""The flags that decode a picture so many times smaller."""
+
 # What a camera's file may have: noise at the best quality has 3 bytes a pixel.
 _CAMERA_BYTES_PER_PIXEL, _CAMERA_SPARE_BYTES = 4, 64 << 10
 
@@ -99,8 +104,10 @@ def decode_picture(
     return np.asarray(picture, dtype=np.uint8)
 
 
-def decode_camera_picture(data: bytes | Bytes, size_px: tuple[int, int] | None = None) -> Bytes:
-    """Decodes a camera's JPEG to (h,w,3) uint8 BGR. size_px: as in `decode_picture`.
+def decode_camera_picture(
+    data: bytes | Bytes, size_px: tuple[int, int] | None = None, flags: int = cv2.IMREAD_COLOR
+) -> Bytes:
+    """Decodes a camera's JPEG to (h,w,3) uint8 BGR, or as other flags say. size_px: as in `decode_picture`.
 
     Raises MalformedError, also for a file that is too large for its picture size.
     """
@@ -111,4 +118,4 @@ def decode_camera_picture(data: bytes | Bytes, size_px: tuple[int, int] | None =
     most_bytes = _CAMERA_BYTES_PER_PIXEL * width * height + _CAMERA_SPARE_BYTES
     if len(array) > most_bytes:
         raise MalformedError(f"has {len(array)} bytes for {width}x{height} pixels")
-    return decode_picture(data, cv2.IMREAD_COLOR, size_px)
+    return decode_picture(data, flags, size_px)

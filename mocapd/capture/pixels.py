@@ -1,4 +1,4 @@
-"""Converts OpenCV's buffers to the pixels of a Frame and the JPEG that they were decoded from."""
+"""Converts OpenCV's buffers to the pixels of a Frame."""
 
 import numpy as np
 
@@ -14,11 +14,3 @@ def frozen_pixels(image: MatLike) -> Bytes:
     pixels = np.ascontiguousarray(image, dtype=np.uint8)
     pixels.setflags(write=False)
     return pixels
-
-
-def delivered_jpeg(buffer: MatLike, pixels: Bytes) -> bytes | None:
-    """A copy of a camera's JPEG file, which outlives the driver's buffer.
-
-    None for a file larger than its pixels: most of it is no picture.
-    """
-    return buffer.tobytes() if buffer.nbytes <= pixels.nbytes else None

@@ -4,11 +4,12 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
-from mocapd.boundary.image_decoding import MOST_PIXELS, decode_camera_picture
+from mocapd.boundary.image_decoding import MOST_PIXELS
 from mocapd.boundary.urls import split_url, without_password
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import Openings
-from mocapd.capture.pixels import delivered_jpeg, frozen_pixels
+from mocapd.capture.jpeg_picture import read_jpeg
+from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.video_codec import undecodable_codec
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, ConfigError, MalformedError, UnavailableError
@@ -34,7 +35,9 @@ class UrlSource:
         size_px: tuple[int, int] | None = None,
         open_timeout_s: float = 3.0,
         read_timeout_s: float = 1.0,
+        reduced_by: int = 1,
     ) -> None:
+        """reduced_by: see SourceRequest."""
         if split_url(url).hostname is None:
             raise ConfigError(
                 "an address without a host", name, "write it as rtsp://user:password@host:port/path"
@@ -42,7 +45,7 @@ class UrlSource:
         self.name = name
         self._url = url
         self._shown = without_password(url)
-        self._size_px = size_px
+        self._size_px, self._reduced_by = size_px, reduced_by
         self._timeouts_ms = (round(1e3 * open_timeout_s), round(1e3 * read_timeout_s))
         self.torn = 0
         self._seq = 0
@@ -117,13 +120,13 @@ class UrlSource:
             if not self._is_mjpg:
                 return Frame(self.name, seq, t_ns, frozen_pixels(raw))
             try:
-                pixels = frozen_pixels(decode_camera_picture(frozen_pixels(raw)))
+                picture = read_jpeg(frozen_pixels(raw).ravel(), reduced_by=self._reduced_by)
             except MalformedError:
                 self.torn += 1
                 if t_ns - began_ns < _TORN_LIMIT_NS:
                     continue
                 break
-            return Frame(self.name, seq, t_ns, pixels, delivered_jpeg(raw, pixels))
+            return Frame(self.name, seq, t_ns, picture)
         guarded.close()
         if codec:
             raise CameraLost(

@@ -83,8 +83,7 @@ class NodeCamera:
 
     def put(self, frame: Frame) -> None:
         """See Mailbox."""
-        height, width = frame.pixels.shape[:2]
-        self._size_px = (width, height)
+        self._size_px = frame.size_px
         self._newest.put(frame)
 
     def look_again(self) -> None:

@@ -17,7 +17,7 @@ class SizeGuard:
 
     def put(self, frame: Frame) -> None:
         """Pass a frame on, or drop it."""
-        got_px = frame.pixels.shape[1::-1]
+        got_px = frame.size_px
         want_px = self._sizes_px.get(frame.camera, got_px)
         if got_px == want_px:
             self._onwards.put(frame)

@@ -137,7 +137,7 @@ class CameraWatch:
             with self._lock:
                 frame = self._newest.get(name)
                 trust, losses = self._identical.trust(name), self._identical.losses(name)
-            if frame is None or frame.pixels.shape[1::-1] != camera.size_px:
+            if frame is None or frame.size_px != camera.size_px:
                 continue  # the tracker reports a wrong size
             newest[name] = frame
             if frame is self._looked_at.get(name) and trust is Trust.KNOWN:

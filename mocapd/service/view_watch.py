@@ -60,10 +60,12 @@ class ViewWatch:
 
     def put(self, frame: Frame) -> None:
         """Takes a frame; stores a small copy while collecting."""
-        if not self._is_collecting or frame.pixels.shape[1::-1] != self._sizes.get(frame.camera):
+        if not self._is_collecting or frame.size_px != self._sizes.get(frame.camera):
             return
         step = max(1, max(self._sizes[frame.camera]) // WORK_PX)
-        small = np.ascontiguousarray(frame.pixels[step // 2 :: step, step // 2 :: step])
+        picture, by = frame.small(step)
+        every = step // by
+        small = np.ascontiguousarray(picture[every // 2 :: every, every // 2 :: every])
         self._waiting.append((frame.camera, frame.t_ns, small, float(step)))
 
     @property

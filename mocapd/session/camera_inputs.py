@@ -1,9 +1,11 @@
 """Makes sources of the configured cameras, in the order of the rig."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
+from mocapd.boundary.image_decoding import REDUCTIONS
 from mocapd.boundary.urls import without_password
 from mocapd.capture.base import Source
 from mocapd.capture.kinds.source_kinds import (
@@ -18,7 +20,10 @@ from mocapd.capture.source_request import SourceRequest
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.config.sections import CameraSection, Config
 from mocapd.errors import ConfigError
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.idmap_renderer import image_scales
 from mocapd.pipeline.bundler import BundlerParams
+from mocapd.trackers.registry import entry
 from mocapd.types import Rig
 
 
@@ -51,9 +56,10 @@ def camera_inputs(
     rig: Rig | None,
     origin: Origin | None = None,
     usual_px: tuple[int, int] = WebcamSettings().size_px,
+    reduced_by: Mapping[str, int] = MappingProxyType({}),
 ) -> tuple[CameraInput, ...]:
     """Sources of these cameras, checked but not opened. origin: of all cameras; usual_px: size of webcams outside the
-    rig. Raises ConfigError or InputError."""
+    rig; reduced_by: see SourceRequest, by camera. Raises ConfigError or InputError."""
     cameras = in_rig_order(cameras, rig)
     sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
     identities = identities_of((camera.id, camera.source) for camera in cameras)
@@ -67,13 +73,26 @@ def camera_inputs(
             controls=camera.controls,
         )
         others = tuple(identity for name, identity in identities.items() if name != camera.id)
-        request = SourceRequest(camera.id, size_px, settings, others, pace)
+        request = SourceRequest(
+            camera.id, size_px, settings, others, pace, reduced_by.get(camera.id, 1)
+        )
         open_one = open_source if origin is None else origin.source
         source = open_one(camera.source, request)
         rate_hz = camera.fps_hz if origin is None else origin.fps_hz
         expected_hz = None if source.recorded else rate_hz
         inputs.append(CameraInput(source, camera.source, size_px or (0, 0), expected_hz))
     return tuple(inputs)
+
+
+def reductions(tracker: str, rig: Rig | None) -> Mapping[str, int]:
+    """How many times smaller each camera's JPEG is decoded for this tracker; see SourceRequest."""
+    if rig is None or entry(tracker).whole_pictures:
+        return {}
+    scales = image_scales(rig.cameras, FitParams().work_width_px)
+    return {
+        camera.name: max(by for by in REDUCTIONS if scale % by == 0)
+        for camera, scale in zip(rig.cameras, scales, strict=True)
+    }
 
 
 def bundler_params(config: Config) -> BundlerParams:
@@ -91,8 +110,7 @@ def picture_size(camera: CameraSection) -> tuple[int, int]:
         return WebcamSettings().size_px
     with closing(source):
         source.open()
-        height, width = source.read().pixels.shape[:2]
-    return width, height
+        return source.read().size_px
 
 
 def in_rig_order(cameras: Sequence[CameraSection], rig: Rig | None) -> tuple[CameraSection, ...]:

@@ -22,7 +22,13 @@ from mocapd.config.sections import CameraSection, Config, ControlsSection
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
 from mocapd.geometry.rig_file import load_rig
-from mocapd.session.camera_inputs import CameraInput, camera_inputs, in_rig_order, picture_size
+from mocapd.session.camera_inputs import (
+    CameraInput,
+    camera_inputs,
+    in_rig_order,
+    picture_size,
+    reductions,
+)
 from mocapd.session.tracker_setup import Progress, cache_resources, ready_tracker
 from mocapd.shirt.colour.model_pictures import read_model, stroked_folder, stroked_image
 from mocapd.shirt.colour.strokes import read_labelled
@@ -108,7 +114,8 @@ def open_planned(plan: SessionPlan, progress: Progress, is_beginning: bool = Fal
     if origin is not None and plan.calibrated is None:
         calibration = from_origin(origin).overlaid(calibration)
         rig_source = rig_source or origin.rig_source
-    inputs = camera_inputs(plan.cameras, calibration.rig, origin)
+    reduced_by = reductions(tracker.name, calibration.rig)
+    inputs = camera_inputs(plan.cameras, calibration.rig, origin, reduced_by=reduced_by)
     resources = cache_resources(cache_dir, progress, tracker.tracking)
     rehearsal = partial(progress, "preparing the tracker")
     assumed = calibration.assuming(tracker.stature_m)

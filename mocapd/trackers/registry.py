@@ -53,8 +53,8 @@ class TrackerEntry:
 
     lacks: the reason why it cannot track with this calibration and these cameras, or empty; sees: whether it uses the
     pictures, so that an empty room must give `lost`; reads_shirt: whether its evidence is the shirt's colour ids, which
-    a setup measures with; reads_outline: whether it is the whole body in any clothes; make_caches: makes its missing
-    cache files; caches: their names.
+    a setup measures with; reads_outline: whether it is the whole body in any clothes; whole_pictures: whether it computes on
+    pictures as delivered, not on those averaged down; make_caches: makes its missing cache files; caches: their names.
     """
 
     build: Callable[[Calibration, Any, Resources], Tracker]
@@ -62,6 +62,7 @@ class TrackerEntry:
     sees: bool
     reads_shirt: bool = False
     reads_outline: bool = False
+    whole_pictures: bool = False
     make_caches: Callable[[Resources], object] = _quiet
     caches: tuple[str, ...] = ()
 
@@ -199,6 +200,7 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             _hecht2009,
             _pair_lacks,
             sees=True,
+            whole_pictures=True,
         ),
         "rao_hodges": TrackerEntry(
             _rao_hodges,
@@ -210,6 +212,7 @@ TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(
             _rig_lacks,
             sees=True,
             reads_shirt=True,
+            whole_pictures=True,
             make_caches=_database,
             caches=(CACHE_NAME,),
         ),

@@ -126,23 +126,24 @@ class PictureEncoder:
 def camera_jpeg(frame: Frame, width_px: int) -> Picture | None:
     """A frame with the camera's own JPEG; None where that is unusable: it is missing, too wide, or its header contradicts
     the decoded size."""
-    height, width = frame.pixels.shape[:2]
-    if frame.encoded is None or width_px < width:
+    if frame.encoded is None or width_px < frame.size_px[0]:
         return None
     try:
-        if not is_plain_jpeg(frame.encoded, (width, height)):
+        if not is_plain_jpeg(frame.encoded, frame.size_px):
             return None
     except MalformedError:
         return None
-    return Picture(frame.camera, frame.seq, frame.t_ns, (width, height), frame.encoded)
+    return Picture(frame.camera, frame.seq, frame.t_ns, frame.size_px, frame.encoded)
 
 
 def encode(frame: Frame, width_px: int, quality: int = JPEG_QUALITY) -> Picture:
     """A frame as JPEG, at most `width_px` wide."""
-    height, width = frame.pixels.shape[:2]
-    pixels = frame.pixels
+    width, height = frame.size_px
     if width_px < width:
-        pixels = _scale(pixels, width_px, max(1, round(height * width_px / width)))
+        small, _ = frame.small(1 << (width // width_px).bit_length() - 1)
+        pixels = _scale(small, width_px, max(1, round(height * width_px / width)))
+    else:
+        pixels = frame.pixels
     _, jpeg = cv2.imencode(".jpg", pixels, (cv2.IMWRITE_JPEG_QUALITY, quality))
     return Picture(frame.camera, frame.seq, frame.t_ns, (width, height), jpeg.tobytes())
 

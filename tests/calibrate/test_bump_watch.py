@@ -162,7 +162,7 @@ def test_recorded_cameras_are_steady_until_they_are_turned(
     for one in sources_in_step([folder_source(folder.cameras[k], Pace(live=False))]):
         frame = one.frames[lens.name]
         if not shown or frame.t_ns - shown[-1].t_ns >= nanoseconds(0.99):
-            shown.append(replace(frame, pixels=frame.pixels.copy()))
+            shown.append(replace(frame, picture=frame.pixels.copy()))
     undisturbed = watch_of(lens)
     said = [undisturbed.look(f.t_ns, f.pixels) for f in shown]
     assert Mounting.BUMPED not in said

@@ -82,3 +82,11 @@ def numbered_sim_film(frames: int = 30) -> Film:
     jpegs = tuple(cv2.imencode(".jpg", picture(index))[1].tobytes() for index in range(frames))
     setup = SimSetup(rig_of(scenario), scenario.body.stature_m, scribbles={}, model=())
     return Film(scenario, 0, {one.name: jpegs for one in scenario.cameras}, setup)
+
+
+def taken_upright(jpeg: bytes) -> bytes:
+    """The same JPEG, which says that its camera was held upright: decoders turn it by a quarter."""
+    exif = (
+        b"\xff\xe1\x00\x22Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0"
+    )
+    return jpeg[:2] + exif + jpeg[2:]

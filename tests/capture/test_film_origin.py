@@ -40,6 +40,17 @@ def test_a_frame_set_has_every_camera_and_the_films_own_files() -> None:
         assert all(frame.encoded is film.frames[name][i] for name, frame in one.frames.items())
 
 
+def test_its_cameras_decode_as_small_as_is_asked_for() -> None:
+    origin = FilmOrigin("sim:x", numbered_sim_film())
+    source = origin.source(f"sim:x#{origin.rig.names[0]}", SourceRequest(reduced_by=2))
+    source.open()
+    frame = source.read()
+    source.close()
+    small, by = frame.small(4)
+    assert by == 2
+    assert small.shape[:2] == (frame.size_px[1] // 2, frame.size_px[0] // 2)
+
+
 def test_a_camera_that_it_has_not_or_of_another_size_is_told() -> None:
     origin = FilmOrigin("sim:x", numbered_sim_film())
     with pytest.raises(ConfigError, match="no camera 'nobody'"):

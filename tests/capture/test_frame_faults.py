@@ -3,6 +3,7 @@
 import pytest
 
 from mocapd.capture.camera_thread.frame_faults import FROZEN_NS, FROZEN_VIDEO_NS, FrameFaults
+from mocapd.capture.jpeg_picture import JpegPicture
 from mocapd.clock import NS_PER_S
 from mocapd.types import Frame
 from tests.capture.films import picture
@@ -13,7 +14,8 @@ PERIOD_NS = NS_PER_S // 10
 def frame(number: int, shown: int, jpeg: bool = True) -> Frame:
     """What is shown at this place of a film of 10 Hz."""
     pixels = picture(shown)
-    return Frame("a", number, number * PERIOD_NS, pixels, bytes([shown]) * 9 if jpeg else None)
+    one = JpegPicture(bytes([shown]) * 9, pixels) if jpeg else pixels
+    return Frame("a", number, number * PERIOD_NS, one)
 
 
 @pytest.mark.parametrize(("jpeg", "limit_ns"), [(True, FROZEN_NS), (False, FROZEN_VIDEO_NS)])
@@ -35,7 +37,7 @@ def test_a_covered_lens_is_black_and_not_frozen() -> None:
     faults = FrameFaults()
     black = picture(0) * 0
     told = [
-        faults.add(Frame("a", number, number * PERIOD_NS, black, b"black"), 0)
+        faults.add(Frame("a", number, number * PERIOD_NS, JpegPicture(b"black", black)), 0)
         for number in range(100)
     ]
     assert not faults.frozen

@@ -36,8 +36,12 @@ def _sim(folder: Path) -> Source:
     return SimSource(numbered_sim_film(), "cam0")
 
 
+def _sim_decoded_smaller(folder: Path) -> Source:
+    return SimSource(numbered_sim_film(), "cam0", reduced_by=2)
+
+
 RECORDED: tuple[Make, ...] = (_file, _live_file, _folder)
-LIVE: tuple[Make, ...] = (_sim,)
+LIVE: tuple[Make, ...] = (_sim, _sim_decoded_smaller)
 
 
 @pytest.fixture(params=RECORDED + LIVE)

@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 
 from mocapd.capture.camera_thread.rate import RateMeter
-from mocapd.capture.pixels import delivered_jpeg
 from mocapd.capture.webcam import v4l2
 from mocapd.capture.webcam.controls import Controls, apply_controls, control_steps
 from mocapd.capture.webcam.v4l2 import WebcamSettings, decode, negotiate
 from mocapd.errors import ConfigError, UnavailableError
-from mocapd.types import Bytes
-from tests.capture.films import number_of, picture
+from mocapd.types import Bytes, Frame
+from tests.capture.films import number_of, picture, taken_upright
 
 SIZE_PX = (64, 48)
 
@@ -26,29 +25,37 @@ def jpeg(index: int) -> Bytes:
     return np.asarray(cv2.imencode(".jpg", picture(index))[1], dtype=np.uint8)
 
 
+def taken(buffer: Bytes, fourcc: str = "MJPG", reduced_by: int = 1) -> Frame | None:
+    picture = decode(buffer, fourcc, SIZE_PX, reduced_by)
+    return None if picture is None else Frame("a", 0, 0, picture)
+
+
 def test_a_whole_jpeg_is_decoded_whatever_the_shape_of_the_buffer() -> None:
     for buffer in (jpeg(77), jpeg(77).reshape(1, -1), np.append(jpeg(77), np.zeros(99, np.uint8))):
-        pixels = decode(buffer, "MJPG", SIZE_PX)
-        assert pixels is not None
-        assert pixels.shape == (48, 64, 3)
-        assert not pixels.flags.writeable
-        assert number_of(pixels) == 77
+        frame = taken(buffer)
+        assert frame is not None
+        assert frame.pixels.shape == (48, 64, 3)
+        assert not frame.pixels.flags.writeable
+        assert number_of(frame.pixels) == 77
 
 
-def test_its_file_outlives_the_drivers_buffer() -> None:
+@pytest.mark.parametrize("reduced_by", [1, 2])
+def test_its_file_outlives_the_drivers_buffer(reduced_by: int) -> None:
     buffer = jpeg(77).reshape(1, -1).copy()
-    pixels = decode(buffer, "MJPG", SIZE_PX)
-    assert pixels is not None
-    delivered = delivered_jpeg(buffer, pixels)
+    frame = taken(buffer, reduced_by=reduced_by)
+    assert frame is not None
     buffer[:] = 0  # the driver writes the next picture
-    assert delivered == jpeg(77).tobytes()
+    assert frame.encoded == jpeg(77).tobytes()
+    assert number_of(frame.pixels) == 77
 
 
-def test_a_file_that_takes_more_than_its_pixels_is_not_kept() -> None:
+@pytest.mark.parametrize("reduced_by", [1, 2])
+def test_a_file_that_takes_more_than_its_pixels_is_not_kept(reduced_by: int) -> None:
     stuffed = np.append(jpeg(77), np.zeros(64 * 48 * 3, np.uint8))
-    pixels = decode(stuffed, "MJPG", SIZE_PX)
-    assert pixels is not None
-    assert delivered_jpeg(stuffed, pixels) is None
+    frame = taken(stuffed, reduced_by=reduced_by)
+    assert frame is not None
+    assert frame.encoded is None
+    assert number_of(frame.pixels) == 77
 
 
 @pytest.mark.parametrize("part", [0.0, 0.1, 0.5, 0.95])
@@ -71,18 +78,16 @@ def test_a_header_of_a_huge_picture_is_torn_before_memory_is_taken() -> None:
 
 
 def test_a_picture_that_is_turned_by_its_own_word_is_torn() -> None:
-    exif = (
-        b"\xff\xe1\x00\x22Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0"
-    )
-    turned = jpeg(5).tobytes()[:2] + exif + jpeg(5).tobytes()[2:]
-    assert decode(np.frombuffer(turned, dtype=np.uint8), "MJPG", SIZE_PX) is None
+    turned = np.frombuffer(taken_upright(jpeg(5).tobytes()), dtype=np.uint8)
+    assert decode(turned, "MJPG", SIZE_PX) is None
+    assert decode(turned, "MJPG", SIZE_PX, 2) is None
 
 
 def test_yuyv_is_converted_and_a_short_buffer_is_torn() -> None:
     buffer = cv2.cvtColor(picture(9), cv2.COLOR_BGR2YUV_YUY2)
-    pixels = decode(buffer, "YUYV", SIZE_PX)
-    assert pixels is not None
-    assert number_of(pixels) == 9
+    frame = taken(np.asarray(buffer, np.uint8), "YUYV")
+    assert frame is not None
+    assert number_of(frame.pixels) == 9
     assert decode(buffer.reshape(-1)[:-2], "YUYV", SIZE_PX) is None
 
 

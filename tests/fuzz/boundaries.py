@@ -10,6 +10,7 @@ import cv2
 
 from mocapd.boundary.files import is_file, is_folder, read_file, read_text, user_path
 from mocapd.boundary.image_decoding import (
+    REDUCTIONS,
     decode_camera_picture,
     decode_picture,
     is_plain_jpeg,
@@ -18,7 +19,9 @@ from mocapd.boundary.image_decoding import (
 from mocapd.boundary.numbers import brief, finite_number, whole_number, whole_number_of_text
 from mocapd.boundary.parsing import convert, decode_json, decode_msgpack, parse_json, parse_toml
 from mocapd.boundary.urls import split_url, without_password
-from mocapd.errors import MocapdError
+from mocapd.capture.jpeg_picture import read_jpeg
+from mocapd.errors import MalformedError, MocapdError
+from mocapd.types import Frame
 from mocapd.web.links.wizard_link import PageCommand
 from tests.fuzz.damaged_pictures import damaged_jpeg, damaged_png, jpeg, png, sample
 from tests.fuzz.large_pictures import large_picture
@@ -98,7 +101,14 @@ def pictures(place: Place) -> Attempt:
 
     def attempt(random: Random, number: int) -> bool:
         good = goods[number % len(goods)]
-        data = (damaged_png if number % len(goods) < 2 else damaged_jpeg)(random, good)
+        is_png = number % len(goods) < 2
+        data = (damaged_png if is_png else damaged_jpeg)(random, good)
+        if not is_png and random.random() < 0.25:
+            frame = Frame("", 0, 0, read_jpeg(data, _SIZE_PX, random.choice(list(REDUCTIONS))))
+            try:
+                return frame.pixels.shape[1::-1] == frame.size_px
+            except MalformedError:
+                raise WrongError("a picture that was taken small cannot be decoded whole") from None
         flags = random.choice((cv2.IMREAD_COLOR, cv2.IMREAD_GRAYSCALE, cv2.IMREAD_UNCHANGED))
         if random.random() < 0.5:
             read_header(data)

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 
 from mocapd.capture.base import Source
+from mocapd.capture.jpeg_picture import JpegPicture
 from mocapd.capture.kinds.source_kinds import open_source
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.remote.remote_source import RemoteSource
@@ -75,7 +76,7 @@ class StreamingWebcam(FakeWebcam):
         self.pictures += 1
         pixels[:8, :8] = self.pictures % 250  # as no two pictures of a camera are the same
         jpeg = cv2.imencode(".jpg", pixels)[1].tobytes()
-        return Frame(self.name, 0, t_ns, frozen_pixels(pixels), jpeg)
+        return Frame(self.name, 0, t_ns, JpegPicture(jpeg, frozen_pixels(pixels)))
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,13 @@ from mocapd.calibration.from_origin import from_capture
 from mocapd.capture.capture_folder import load_folder
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.errors import ConfigError, InputError
+from mocapd.session.camera_inputs import reductions
 from mocapd.session.session import cameras_of, open_session
 from mocapd.session.tracker_setup import cache_resources
 from mocapd.shirt.colour.model_pictures import read_model, stroked_folder
+from mocapd.types import Rig
 from tests.cli.small_capture import SIZE_PX, camera_entry, write_capture, write_rig, write_stroked
+from tests.geometry.rigs import ring
 
 pytestmark = pytest.mark.kernels
 
@@ -49,6 +52,19 @@ def test_the_configs_own_rig_goes_before_the_folders(capture: Path, tmp_path: Pa
     assert session.rig is not None
     assert session.rig_source == str(own)
     assert [camera.source.name for camera in session.cameras] == ["cam1", "cam0"]
+
+
+@pytest.mark.parametrize(
+    ("size_px", "by"),
+    [((320, 240), 1), ((640, 480), 2), ((960, 540), 1), ((1280, 720), 4), ((1920, 1080), 2)],
+)
+def test_pictures_are_decoded_to_what_the_tracker_averages_them_from(
+    size_px: tuple[int, int], by: int
+) -> None:
+    rig = Rig((replace(ring(1)[0], size_px=size_px),))
+    assert reductions("auto", rig) == {rig.names[0]: by}
+    assert not reductions("wang2011", rig)  # which needs them whole
+    assert not reductions("canned", None)
 
 
 def test_webcams_need_no_rig_where_the_tracker_needs_none() -> None:

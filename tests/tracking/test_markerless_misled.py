@@ -91,7 +91,7 @@ def test_a_close_pair_that_has_changed_places_is_told_by_the_room_and_harms_noth
 def _exchanged(frames: FrameSet) -> FrameSet:
     """Each camera shows what the other one sees."""
     first, second = frames.frames.values()
-    swapped = replace(first, pixels=second.pixels), replace(second, pixels=first.pixels)
+    swapped = replace(first, picture=second.picture), replace(second, picture=first.picture)
     return replace(frames, frames={one.camera: one for one in swapped})
 
 

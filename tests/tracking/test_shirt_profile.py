@@ -177,6 +177,6 @@ def test_evidence_shows_the_shirt_where_the_person_is(tracker: Stepping, filmed:
 
 def test_a_picture_of_another_size_is_told(tracker: Stepping, filmed: Filmed) -> None:
     frame = filmed.frame_sets(filmed.pictures[:1])[0]
-    small = replace(frame.frames["left"], pixels=np.zeros((120, 160, 3), np.uint8))
+    small = replace(frame.frames["left"], picture=np.zeros((120, 160, 3), np.uint8))
     with pytest.raises(ConfigError, match=r"160x120.*320x240"):
         tracker.step(replace(frame, frames={"left": small}))

@@ -9,6 +9,7 @@ from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX, joint_positions, standard_skeleton
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
+from mocapd.capture.jpeg_picture import JpegPicture
 from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.clock import monotonic_ns
 from mocapd.errors import InputError, MocapdError, Problem, UnavailableError
@@ -119,7 +120,8 @@ class TinyHost:
     ) -> Frame:
         """Hand in a picture: grey, as bright as `seq`, 640x480."""
         pixels = np.full((480, 640, 3), seq % 256, dtype=np.uint8)
-        frame = Frame(camera, seq, monotonic_ns() if t_ns is None else t_ns, pixels, encoded)
+        picture = pixels if encoded is None else JpegPicture(encoded, pixels)
+        frame = Frame(camera, seq, monotonic_ns() if t_ns is None else t_ns, picture)
         assert self.hub is not None
         self.hub.put(frame)
         return frame

@@ -37,6 +37,7 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     from mocapd.app.daemon.notifier import Notifier
     from mocapd.app.terminal.progress import ProgressBars
     from mocapd.app.terminal.status_line import StatusLine
+    from mocapd.boundary.image_decoding import REDUCTIONS
     from mocapd.capture.decoder_warnings import DecoderWarnings
     from mocapd.capture.kinds.source_kinds import common_origin, open_origin
     from mocapd.node.network_emulation import parse_imperfections
@@ -48,7 +49,8 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     origin = common_origin(camera.source for camera in config.camera)
     with ProgressBars() as progress:
         opened = open_origin(origin, config.cache_dir, progress) if origin else None
-    inputs = camera_inputs(config.camera, None, opened, config.node.size_px)
+    smallest = dict.fromkeys((camera.id for camera in config.camera), max(REDUCTIONS))
+    inputs = camera_inputs(config.camera, None, opened, config.node.size_px, smallest)
     faults = parse_imperfections(imperfect) if imperfect else None
     node = CameraNode(config.instance, zenoh_section(config.outputs), config.node, inputs, faults)
     # an exception in any thread must end the process

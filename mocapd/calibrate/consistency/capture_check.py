@@ -103,14 +103,14 @@ class CaptureCheck:
     def put(self, frame: Frame) -> None:
         """Add a picture of a camera of the rig; ignores one of another size than its calibration."""
         buffer = self._buffers.get(frame.camera)
-        if buffer is not None and frame.pixels.shape[1::-1] == buffer.camera.size_px:
+        if buffer is not None and frame.size_px == buffer.camera.size_px:
             buffer.newest = frame.pixels
             self.put_small(frame.camera, frame.t_ns, *shrink(frame.pixels))
 
     def put_whole(self, frame: Frame) -> None:
         """Add a whole picture of now, in addition to the smaller ones: the room's points come from the newest."""
         buffer = self._buffers.get(frame.camera)
-        if buffer is not None and frame.pixels.shape[1::-1] == buffer.camera.size_px:
+        if buffer is not None and frame.size_px == buffer.camera.size_px:
             buffer.newest = frame.pixels
 
     def put_small(self, camera: str, t_ns: int, small: Bytes, smaller: float) -> None:

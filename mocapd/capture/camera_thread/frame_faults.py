@@ -78,7 +78,7 @@ class FrameFaults:
             self._black_since_ns = frame.t_ns
 
     def _notice(self, frame: Frame) -> str:
-        size_px = frame.pixels.shape[1::-1]
+        size_px = frame.size_px
         if self._size_px is not None and size_px != self._size_px:
             return (
                 f"sends {size_px[0]}x{size_px[1]}, its calibration is for {self._size_px[0]}x{self._size_px[1]}: it "
@@ -94,7 +94,9 @@ class FrameFaults:
 
 
 def _is_black(frame: Frame) -> bool:
-    return bool(frame.pixels[::_EVERY_PX, ::_EVERY_PX].max() <= _BLACK)
+    small, by = frame.small(_EVERY_PX)
+    every = _EVERY_PX // by
+    return bool(small[::every, ::every].max() <= _BLACK)
 
 
 def _is_same(a: Frame, b: Frame) -> bool:

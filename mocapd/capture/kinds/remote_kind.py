@@ -11,7 +11,8 @@ def _open(address: str, request: SourceRequest) -> Source:
     from mocapd.capture.remote.remote_source import RemoteSource  # imports Zenoh
 
     remote = parse_remote(address)
-    return RemoteSource(request.name or remote.place, remote, request.size_px, request.settings)
+    name = request.name or remote.place
+    return RemoteSource(name, remote, request.size_px, request.settings, request.reduced_by)
 
 
 REMOTE = SourceKind(form=FORM, link=CameraLink.NETWORK, matches=is_remote, open=_open)

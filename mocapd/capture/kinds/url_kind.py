@@ -15,7 +15,8 @@ def _matches(address: str) -> bool:
 
 
 def _open(address: str, request: SourceRequest) -> Source:
-    return UrlSource(request.name or without_password(address), address, request.size_px)
+    name = request.name or without_password(address)
+    return UrlSource(name, address, request.size_px, reduced_by=request.reduced_by)
 
 
 URL = SourceKind(

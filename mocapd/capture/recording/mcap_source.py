@@ -5,10 +5,9 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 
-from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.boundary.mcap_records import McapFile, McapMessage
+from mocapd.capture.jpeg_picture import read_jpeg
 from mocapd.capture.pace import Pace
-from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.recording.recorded_picture import IMAGE, camera_of, decode_picture_message
 from mocapd.clock import NS_PER_S, monotonic_ns
 from mocapd.errors import CameraLost, EndOfStream, MalformedError
@@ -95,8 +94,8 @@ def _frame(message: McapMessage, camera: Camera, name: str, t_ns: int) -> Frame 
     """None for a picture that is damaged or of another size than its calibration."""
     try:
         jpeg = decode_picture_message(message.data).data
-        pixels = decode_camera_picture(jpeg, camera.size_px)
+        picture = read_jpeg(jpeg, camera.size_px)
     except MalformedError as error:
         _log.warning("a picture of camera %r is left out: it %s", camera.name, error.what)
         return None
-    return Frame(name, message.sequence, t_ns, frozen_pixels(pixels), jpeg)
+    return Frame(name, message.sequence, t_ns, picture)

@@ -1,11 +1,8 @@
 """Converts a received picture to a Frame: checks the stamp, and the picture's size before decoding."""
 
-import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
-
 from dataclasses import dataclass
 
-from mocapd.boundary.image_decoding import decode_camera_picture
-from mocapd.capture.pixels import frozen_pixels
+from mocapd.capture.jpeg_picture import read_jpeg
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.camera_wire import PictureStamp
 from mocapd.capture.remote.clock_fit import ClockLine
@@ -28,8 +25,9 @@ class Arrived:
 class PictureReader:
     """The pictures of one camera, in the order in which they came."""
 
-    def __init__(self, camera: str) -> None:
-        self._camera = camera
+    def __init__(self, camera: str, reduced_by: int = 1) -> None:
+        """reduced_by: see SourceRequest."""
+        self._camera, self._reduced_by = camera, reduced_by
         self._last_ns = 0
 
     def read(
@@ -43,8 +41,8 @@ class PictureReader:
         t_ns = clock.local_from_remote(stamp.exposure_ns)
         if abs(t_ns - arrived.came_ns) > _OLDEST_NS:
             raise MalformedError("was exposed at a time that cannot be")
-        pixels = frozen_pixels(decode_camera_picture(arrived.data, size_px))
+        picture = read_jpeg(arrived.data, size_px, self._reduced_by)
         # clip the clock's error: an exposure precedes its arrival and follows the previous exposure
         t_ns = max(min(t_ns, arrived.came_ns), self._last_ns + 1)
         self._last_ns = t_ns
-        return Frame(self._camera, stamp.seq, t_ns, pixels, arrived.data)
+        return Frame(self._camera, stamp.seq, t_ns, picture)

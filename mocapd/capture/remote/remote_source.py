@@ -51,9 +51,10 @@ class RemoteSource:
         address: RemoteAddress,
         size_px: tuple[int, int] | None = None,
         settings: WebcamSettings | None = None,
+        reduced_by: int = 1,
     ) -> None:
         """size_px: required (width, height), of its calibration. settings: only the controls are used, as the node sets
-        size and rate."""
+        size and rate; reduced_by: see SourceRequest."""
         self.name = name
         self.torn = 0
         self.camera_failed = False
@@ -65,7 +66,7 @@ class RemoteSource:
         self._turn = 0  # of opening and closing
         self._state: CameraState | None = None
         self._takes_orders = False
-        self._pictures = PictureReader(name)
+        self._pictures = PictureReader(name, reduced_by)
         self._limit = ArrivalLimit(_MOST_OF_RATE * self._settings.fps_hz)
 
     @property

@@ -5,11 +5,10 @@ import threading
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.base import Source
 from mocapd.capture.file import check_size
+from mocapd.capture.jpeg_picture import read_jpeg
 from mocapd.capture.origin import Progress, split_address
-from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.capture.simulated.socket_camera import SocketCamera
 from mocapd.capture.simulated.sockets import Sockets
@@ -77,21 +76,20 @@ class FilmOrigin:
     def source(self, address: str, request: SourceRequest) -> Source:
         """See Origin. A camera's id is its name in the scenario, which has the rig."""
         name = request.name or split_address(address)[1]
-        camera = self._camera(name)
+        camera = self._camera(name, request.reduced_by)
         (size_px,) = (spec.size_px for spec in self.rig.cameras if spec.name == name)
         check_size(self.rig_source, name, size_px, request.size_px)
         return camera
 
-    def _camera(self, name: str) -> Source:
+    def _camera(self, name: str, reduced_by: int) -> Source:
         def shown(webcam: str) -> Source:
-            return _FilmCamera(self._start, self._film, webcam)
+            return _FilmCamera(self._start, self._film, webcam, reduced_by)
 
         return shown(name) if self._sockets is None else SocketCamera(name, self._sockets, shown)
 
     def _frame(self, camera: str, i: int, clock_offset_s: float) -> Frame:
         jpeg = self._film.frames[camera][i]
-        pixels = frozen_pixels(decode_camera_picture(jpeg))
-        return Frame(camera, i, nanoseconds(i / self.fps_hz + clock_offset_s), pixels, jpeg)
+        return Frame(camera, i, nanoseconds(i / self.fps_hz + clock_offset_s), read_jpeg(jpeg))
 
 
 class _FilmStart:
@@ -116,8 +114,8 @@ class _FilmStart:
 
 
 class _FilmCamera(SimSource):
-    def __init__(self, start: _FilmStart, film: Film, camera: str) -> None:
-        super().__init__(film, camera)
+    def __init__(self, start: _FilmStart, film: Film, camera: str, reduced_by: int) -> None:
+        super().__init__(film, camera, reduced_by=reduced_by)
         self._start = start
 
     def open(self) -> None:

@@ -5,8 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from mocapd.boundary.image_decoding import decode_camera_picture
-from mocapd.capture.pixels import frozen_pixels
+from mocapd.capture.jpeg_picture import read_jpeg
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import CameraLost, ConfigError, InputError, MalformedError
 from mocapd.sim.film import Film
@@ -35,9 +34,10 @@ class SimCamera:
         jpeg: Callable[[int], bytes],
         epoch_ns: int,
         first_shown: int = 0,
+        reduced_by: int = 1,
     ) -> None:
         """jpeg: the file that frame n >= 0 comes in; called by `read` when its exposure has ended. first_shown:
-        which frame of the world frame 0 shows."""
+        which frame of the world frame 0 shows; reduced_by: see SourceRequest."""
         specs = {spec.name: (i, spec) for i, spec in enumerate(scenario.cameras)}
         if camera not in specs:
             raise ConfigError(
@@ -47,7 +47,7 @@ class SimCamera:
             )
         self.name = camera
         index, self._spec = specs[camera]
-        self._jpeg = jpeg
+        self._jpeg, self._reduced_by = jpeg, reduced_by
         self._scenario, self._first_shown = scenario, first_shown
         self._fps_hz = scenario.fps_hz
         self._seed = (scenario.seed, 7, index)
@@ -77,13 +77,13 @@ class SimCamera:
             raise CameraLost("was unplugged", self.name, "the scenario plugs it in again")
         jpeg = self._jpeg(n)
         try:
-            pixels = decode_camera_picture(jpeg)
+            picture = read_jpeg(jpeg, reduced_by=self._reduced_by)
         except MalformedError as error:
             raise InputError(
                 f"a frame of the film {error.what}", self.name, "delete the cache"
             ) from None
         seq, t_ns = n - self._first, self.exposure_ns(n)
-        return Frame(self.name, seq, t_ns, frozen_pixels(pixels), jpeg)
+        return Frame(self.name, seq, t_ns, picture)
 
     def close(self) -> None:
         """Switch off and wake a blocked `read`."""
@@ -112,8 +112,8 @@ class SimCamera:
 class SimSource(SimCamera):
     """One camera of a film, which it shows over and over. Raises ConfigError for an unknown one."""
 
-    def __init__(self, film: Film, camera: str, epoch_ns: int = 0) -> None:
+    def __init__(self, film: Film, camera: str, epoch_ns: int = 0, reduced_by: int = 1) -> None:
         jpegs = film.frames.get(camera, ())
         super().__init__(
-            film.scenario, camera, lambda n: jpegs[n % len(jpegs)], epoch_ns, film.first
+            film.scenario, camera, lambda n: jpegs[n % len(jpegs)], epoch_ns, film.first, reduced_by
         )

@@ -8,8 +8,8 @@ import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
 
 import cv2
 
-from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.base import Source
+from mocapd.capture.jpeg_picture import JpegPicture, read_jpeg
 from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.simulated.sockets import Fault, FoundSocket, Sockets
 from mocapd.capture.webcam.identity import WebcamIdentity
@@ -125,12 +125,11 @@ class SocketCamera:
 
 def _with(frame: Frame, pixels: cv2.typing.MatLike) -> Frame:
     encoded = cv2.imencode(".jpg", pixels)[1].tobytes()
-    return replace(frame, pixels=frozen_pixels(pixels), encoded=encoded)
+    return replace(frame, picture=JpegPicture(encoded, frozen_pixels(pixels)))
 
 
 def _cut(frame: Frame, encoded: bytes) -> Frame | None:
     try:
-        pixels = decode_camera_picture(encoded[: len(encoded) // 2])
+        return replace(frame, picture=read_jpeg(encoded[: len(encoded) // 2]))
     except MalformedError:
         return None
-    return replace(frame, pixels=frozen_pixels(pixels))

@@ -11,10 +11,10 @@ import cv2
 import numpy as np
 from cv2.typing import MatLike
 
-from mocapd.boundary.image_decoding import decode_camera_picture
 from mocapd.capture.file import size_error
 from mocapd.capture.guard import Openings
-from mocapd.capture.pixels import delivered_jpeg, frozen_pixels
+from mocapd.capture.jpeg_picture import JpegPicture, read_jpeg
+from mocapd.capture.pixels import frozen_pixels
 from mocapd.capture.webcam.camera_controls import NodeControls
 from mocapd.capture.webcam.controls import (
     ControlResult,
@@ -78,14 +78,16 @@ class V4l2Source:
         others: tuple[WebcamIdentity, ...] = (),
         sysfs: Path = SYSFS,
         dev: Path = DEV,
+        reduced_by: int = 1,
     ) -> None:
+        """reduced_by: see SourceRequest."""
         self.name = name
         self.torn = 0
         self.negotiated: NegotiatedFormat | None = None
         self._where = where
         self._settings = settings if settings is not None else WebcamSettings()
         self._others = others
-        self._sysfs, self._dev = sysfs, dev
+        self._sysfs, self._dev, self._reduced_by = sysfs, dev, reduced_by
         self._numbers = FrameNumbers()
         self._openings = Openings()
         self._delivered = False  # since it was opened
@@ -157,12 +159,11 @@ class V4l2Source:
                 good, raw = capture.retrieve()  # gives the buffer back
             seq = self._numbers.number(stamp_ns, monotonic_ns())
             fourcc = negotiated.fourcc
-            pixels = decode(raw, fourcc, negotiated.size_px) if good else None
-            if pixels is not None:
+            picture = decode(raw, fourcc, negotiated.size_px, self._reduced_by) if good else None
+            if picture is not None:
                 self._delivered = True
-                encoded = delivered_jpeg(raw, pixels) if fourcc == _MJPG else None
                 t_ns = grabbed_ns if stamp_ns is None else stamp_ns
-                return Frame(self.name, seq, t_ns, pixels, encoded)
+                return Frame(self.name, seq, t_ns, picture)
             self.torn += 1
             if grabbed_ns - began_ns > _TORN_LIMIT_NS:
                 guarded.close()
@@ -279,8 +280,10 @@ def negotiate(
     )
 
 
-def decode(raw: MatLike, fourcc: str, size_px: tuple[int, int]) -> Bytes | None:
-    """A buffer of the driver as BGR (height, width, 3), read-only; None when it is torn.
+def decode(
+    raw: MatLike, fourcc: str, size_px: tuple[int, int], reduced_by: int = 1
+) -> Bytes | JpegPicture | None:
+    """A buffer of the driver as the picture of a `Frame`; None when it is torn.
 
     MJPG: a JPEG file, of which a cut one is refused here, not half decoded, and one of another size
     before it takes memory. YUYV: two bytes a pixel.
@@ -291,11 +294,12 @@ def decode(raw: MatLike, fourcc: str, size_px: tuple[int, int]) -> Bytes | None:
             return None
         return frozen_pixels(cv2.cvtColor(raw.reshape(height, width, 2), cv2.COLOR_YUV2BGR_YUY2))
     try:
-        decoded = decode_camera_picture(np.asarray(raw, dtype=np.uint8), size_px)
+        picture = read_jpeg(np.asarray(raw, dtype=np.uint8).ravel(), size_px, reduced_by)
     except MalformedError:
         return None
     # one that says it was taken upright is turned by the decoder
-    return frozen_pixels(decoded) if decoded.shape == (height, width, 3) else None
+    decoded_px = picture.size_px if isinstance(picture, JpegPicture) else picture.shape[1::-1]
+    return picture if decoded_px == size_px else None
 
 
 def _stamp_ns(driver_ms: float, grabbed_ns: int) -> int | None:

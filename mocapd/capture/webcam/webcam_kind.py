@@ -32,7 +32,7 @@ def _webcam(name: str, where: WebcamIdentity | Path, request: SourceRequest) -> 
     settings = request.settings
     if request.size_px is not None:
         settings = replace(settings, size_px=request.size_px)
-    return V4l2Source(name, where, settings, request.others)
+    return V4l2Source(name, where, settings, request.others, reduced_by=request.reduced_by)
 
 
 WEBCAM = SourceKind(

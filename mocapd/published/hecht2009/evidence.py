@@ -17,7 +17,7 @@ from mocapd.published.hecht2009.mass_spring.frusta import NAMES
 from mocapd.published.hecht2009.motion_edges import MotionEdges, WorkPicture
 from mocapd.published.hecht2009.params import Params
 from mocapd.published.hecht2009.part_samples import PartSamples, samples_of
-from mocapd.types import Bytes, Camera, Floats, FrameSet, Rig, Singles
+from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet, Rig, Singles
 from mocapd.vision.foreground_kernels import BACKGROUND, SHADOW, UNKNOWN
 from mocapd.vision.frame_size import check_frame_size
 from mocapd.vision.hidden_room import HiddenRoom, guess_room
@@ -60,15 +60,16 @@ class CameraEvidence:
         """True if the last frame set had a frame of this camera."""
         return self._pixels is not None
 
-    def look(self, pixels: Bytes | None, offset_s: float) -> None:
-        """Process a frame's pixels (h,w,3), or None. Raises ConfigError when its size is not the calibration's."""
+    def look(self, frame: Frame | None, offset_s: float) -> None:
+        """Process a frame, or None. Raises ConfigError when its size is not the calibration's."""
         had = self._pixels is not None
-        self._pixels, self.offset_s = pixels, offset_s
-        if pixels is None:
+        self._pixels, self.offset_s = None, offset_s
+        if frame is None:
             return
-        check_frame_size(self.camera.name, pixels, self.camera.size_px)
+        check_frame_size(frame, self.camera.size_px)
+        self._pixels = frame.pixels
         self._now, self._last = self._last, self._now
-        self._now.fill(pixels)
+        self._now.fill(frame.pixels)
         self._edges.fill(self._now.grey, self._last.grey if had else None, self._params.edges)
 
     def update_foreground(self, uncovered: bool) -> None:
@@ -182,7 +183,7 @@ class RigEvidence:
             if frame is None:
                 view.look(None, 0.0)
             else:
-                view.look(frame.pixels, seconds(frame.t_ns - frames.t_ns))
+                view.look(frame, seconds(frame.t_ns - frames.t_ns))
 
     @property
     def present(self) -> Sequence[CameraEvidence]:

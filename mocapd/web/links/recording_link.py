@@ -89,7 +89,7 @@ class RecordingLink:
 
 
 def _width(frame: Frame) -> int:
-    return int(frame.pixels.shape[1])
+    return frame.size_px[0]
 
 
 def _message(picture: Picture, dropped: int) -> bytes:

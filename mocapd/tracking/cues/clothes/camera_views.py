@@ -1,108 +1,25 @@
-"""Per-camera state of the clothes cue: downscaled picture, background model, foreground mask and appearance model."""
+"""All cameras of the clothes cue: what each knows of its room and of the body, done for all of them at once."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TypeVar
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
 from mocapd.fit.idmap_renderer import Roi, work_size
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
-from mocapd.tracking.cues.clothes.appearance import Appearance, region_distances
+from mocapd.tracking.cues.clothes.appearance import region_distances
+from mocapd.tracking.cues.clothes.camera_view import CameraView
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.floor_view import FloorView
-from mocapd.types import Bytes, Floats, Singles
+from mocapd.types import Bytes, Floats
 from mocapd.vision.clip_background import clip_background
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, stands
-from mocapd.vision.ghost_removal import brightness_edges
-from mocapd.vision.heatmaps.person_crop import PersonCrop
-from mocapd.vision.room_background import RoomBackground
 
 T = TypeVar("T")
-
-_OUTLINE_OFFSET = np.ones(
-    (13, 13), np.uint8
-)  # half of it: distance of the pixels that are compared with the outline's
-_OUTLINE_WIDTH = np.ones((3, 3), np.uint8)
-
-
-class CameraView:
-    """One camera: its newest work picture, background and appearance."""
-
-    def __init__(
-        self, name: str, work_size_px: tuple[int, int], image_scale: int, params: ClothesParams
-    ) -> None:
-        """work_size_px: width and height of its work pictures; image_scale: by how much frames are averaged down."""
-        self.name, self.image_scale = name, image_scale
-        w, h = work_size_px
-        self.picture = np.zeros((h, w, 3), np.uint8)
-        self.foreground = np.zeros((h, w), np.uint8)
-        self.body = np.zeros((h, w), np.uint8)  # the body with a margin, or a possible person
-        self.drawn = np.zeros((h, w), np.uint8)  # the tracked body
-        self.person_odds = np.zeros(
-            (h, w), np.float32
-        )  # log-odds of the network; 0 outside its crop
-        self.near: Roi | None = None  # the region about it
-        self.is_covered = False  # about the body, by somebody close to the lens
-        self.background = RoomBackground(h, w, params.background)
-        self.appearance = Appearance(params.appearance)
-        self.may_hold_body = (
-            False  # the background, if learned from a recording with a person in it
-        )
-        self.body_margin, self.close_margin = (
-            np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
-        )
-
-    def reset(self) -> None:
-        """Forget background and appearance."""
-        self.background.reset()
-        self.appearance.reset()
-        self.may_hold_body = False
-        self.mark_body(None)
-
-    def mark_body(self, drawn: tuple[Roi, Bytes] | None) -> None:
-        """Marks the body, a region and its rendered ids (h,w), with a margin, so that the background does not learn it;
-        None: no body."""
-        self.body[:] = 0
-        self.drawn[:] = 0
-        self.near = None
-        if drawn is not None:
-            self.near, ids = drawn
-            x0, y0, x1, y1 = self.near
-            here = (ids > 0).astype(np.uint8)
-            self.drawn[y0:y1, x0:x1] = here
-            # the region has a wider margin than that
-            self.body[y0:y1, x0:x1] = cv2.dilate(here, self.body_margin)
-
-    def mark_person(self, odds: Singles, crop: PersonCrop) -> None:
-        """Stores the network's log-odds (96,96) of the person in a crop of the picture."""
-        h, w = self.person_odds.shape
-        cv2.warpAffine(
-            odds, crop.affine, (w, h), dst=self.person_odds, flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
-            borderValue=(0.0,),
-        )  # fmt: skip
-
-    def learn_background(self, agrees: bool, ticks: int = 1) -> None:
-        """Updates the background outside the marked body. agrees: the body fits the picture, so pixels without a background
-        are learned close to it, too."""
-        self.background.learn(self.picture, self.body, ticks)
-        if agrees and self.near is not None:
-            x0, y0, x1, y1 = self.near
-            body = np.asarray(cv2.dilate(self.drawn[y0:y1, x0:x1], self.close_margin), np.uint8)
-            self.background.learn_unknown(self.picture, body, self.near)
-
-    def update_foreground(self, everywhere: bool = True) -> None:
-        """Updates light and foreground mask; not everywhere: only about the marked body."""
-        gain = self.background.follow_light(self.picture, self.body)
-        if gain is not None:
-            self.appearance.relight(gain)
-        nowhere = (0, 0, 0, 0)
-        within = None if everywhere else self.near or nowhere
-        self.foreground = self.background.foreground(self.picture, within)
 
 
 class CameraViews:
@@ -129,8 +46,7 @@ class CameraViews:
     def take(self, pictures: Mapping[int, Bytes], present: dict[int, float]) -> None:
         """Stores work pictures (h,w,3) by camera, and `present`."""
         for i, picture in pictures.items():
-            self.each[i].picture = picture
-            self.each[i].person_odds[:] = 0.0
+            self.each[i].take(picture)
         self.present = present
 
     def learn_room(
@@ -317,11 +233,9 @@ class CameraViews:
         for i in self.present:
             camera = self.each[i]
             if camera.drawn.any():
-                edges = brightness_edges(camera.picture)
-                wide = np.asarray(cv2.dilate(camera.drawn, _OUTLINE_OFFSET), np.uint8)
-                narrow = np.asarray(cv2.erode(camera.drawn, _OUTLINE_OFFSET), np.uint8)
-                on_outline += float(edges[_outline(camera.drawn)].mean())
-                off_outline += float(edges[_outline(wide) | _outline(narrow)].mean())
+                on, off = camera.outline_edges()
+                on_outline += on
+                off_outline += off
         return on_outline / max(off_outline, 1e-3)
 
     def seed_background(self) -> None:
@@ -343,7 +257,3 @@ class CameraViews:
             x0, y0, x1, y1 = v.roi
             where[self.each[v.index].name] = (k * x0, k * y0, k * x1, k * y1)
         return ids, where
-
-
-def _outline(mask: Bytes) -> NDArray[np.bool_]:
-    return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE_WIDTH) > 0)

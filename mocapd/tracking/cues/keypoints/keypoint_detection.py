@@ -13,7 +13,8 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays, JointTerm
 from mocapd.geometry.camera_model import to_camera, undistort
 from mocapd.geometry.rotations import rotate
-from mocapd.tracking.cues.clothes.camera_views import CameraView, CameraViews
+from mocapd.tracking.cues.clothes.camera_view import CameraView
+from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
 from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.heatmaps.joint_network import (

@@ -69,7 +69,7 @@ def test_behind_a_table_nobody_claims_them(filmed: Filmed, pose_database: PoseDa
             name = renderer.camera.name
             pixels = one.frames[name].pixels.copy()
             pixels[tops[name] :] = (60, 90, 130)
-            frames[name] = replace(one.frames[name], pixels=pixels)
+            frames[name] = replace(one.frames[name], picture=pixels)
         return replace(one, frames=frames)
 
     knees_m = filmed.joints_m[0][LEGS[::2]]

@@ -1,0 +1,114 @@
+"""One camera's state for the clothes cue: downscaled picture, background model, foreground mask and appearance model."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from mocapd.fit.idmap_renderer import Roi
+from mocapd.tracking.cues.clothes.appearance import Appearance
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.types import Bytes, Singles
+from mocapd.vision.ghost_removal import brightness_edges
+from mocapd.vision.heatmaps.person_crop import PersonCrop
+from mocapd.vision.room_background import RoomBackground
+
+_OUTLINE_OFFSET = np.ones(
+    (13, 13), np.uint8
+)  # half of it: distance of the pixels that are compared with the outline's
+_OUTLINE_WIDTH = np.ones((3, 3), np.uint8)
+
+
+class CameraView:
+    """One camera: its newest work picture, background and appearance."""
+
+    def __init__(
+        self, name: str, work_size_px: tuple[int, int], image_scale: int, params: ClothesParams
+    ) -> None:
+        """work_size_px: width and height of its work pictures; image_scale: by how much frames are averaged down."""
+        self.name, self.image_scale = name, image_scale
+        w, h = work_size_px
+        self.picture = np.zeros((h, w, 3), np.uint8)
+        self.foreground = np.zeros((h, w), np.uint8)
+        self.body = np.zeros((h, w), np.uint8)  # the body with a margin, or a possible person
+        self.drawn = np.zeros((h, w), np.uint8)  # the tracked body
+        self.person_odds = np.zeros(
+            (h, w), np.float32
+        )  # log-odds of the network; 0 outside its crop
+        self._has_person_odds = False
+        self.near: Roi | None = None  # the region about it
+        self.is_covered = False  # about the body, by somebody close to the lens
+        self.background = RoomBackground(h, w, params.background)
+        self.appearance = Appearance(params.appearance)
+        self.may_hold_body = (
+            False  # the background, if learned from a recording with a person in it
+        )
+        self.body_margin, self.close_margin = (
+            np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
+        )
+
+    def reset(self) -> None:
+        """Forget background and appearance."""
+        self.background.reset()
+        self.appearance.reset()
+        self.may_hold_body = False
+        self.mark_body(None)
+
+    def take(self, picture: Bytes) -> None:
+        """Stores a work picture (h,w,3), in which nobody is marked yet."""
+        self.picture = picture
+        if self._has_person_odds:
+            self.person_odds[:] = 0.0
+            self._has_person_odds = False
+
+    def mark_body(self, drawn: tuple[Roi, Bytes] | None) -> None:
+        """Marks the body, a region and its rendered ids (h,w), with a margin, so that the background does not learn it;
+        None: no body."""
+        self.body[:] = 0
+        self.drawn[:] = 0
+        self.near = None
+        if drawn is not None:
+            self.near, ids = drawn
+            x0, y0, x1, y1 = self.near
+            here = (ids > 0).astype(np.uint8)
+            self.drawn[y0:y1, x0:x1] = here
+            # the region has a wider margin than that
+            self.body[y0:y1, x0:x1] = cv2.dilate(here, self.body_margin)
+
+    def mark_person(self, odds: Singles, crop: PersonCrop) -> None:
+        """Stores the network's log-odds (96,96) of the person in a crop of the picture."""
+        self._has_person_odds = True
+        h, w = self.person_odds.shape
+        cv2.warpAffine(
+            odds, crop.affine, (w, h), dst=self.person_odds, flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+            borderValue=(0.0,),
+        )  # fmt: skip
+
+    def learn_background(self, agrees: bool, ticks: int = 1) -> None:
+        """Updates the background outside the marked body. agrees: the body fits the picture, so pixels without a background
+        are learned close to it, too."""
+        self.background.learn(self.picture, self.body, ticks)
+        if agrees and self.near is not None:
+            x0, y0, x1, y1 = self.near
+            body = np.asarray(cv2.dilate(self.drawn[y0:y1, x0:x1], self.close_margin), np.uint8)
+            self.background.learn_unknown(self.picture, body, self.near)
+
+    def update_foreground(self, everywhere: bool = True) -> None:
+        """Updates light and foreground mask; not everywhere: only about the marked body."""
+        gain = self.background.follow_light(self.picture, self.body)
+        if gain is not None:
+            self.appearance.relight(gain)
+        nowhere = (0, 0, 0, 0)
+        within = None if everywhere else self.near or nowhere
+        self.foreground = self.background.foreground(self.picture, within)
+
+    def outline_edges(self) -> tuple[float, float]:
+        """Mean image gradient on the marked body's outline, and near it."""
+        edges = brightness_edges(self.picture)
+        wide = np.asarray(cv2.dilate(self.drawn, _OUTLINE_OFFSET), np.uint8)
+        narrow = np.asarray(cv2.erode(self.drawn, _OUTLINE_OFFSET), np.uint8)
+        off = _outline(wide) | _outline(narrow)
+        return float(edges[_outline(self.drawn)].mean()), float(edges[off].mean())
+
+
+def _outline(mask: Bytes) -> NDArray[np.bool_]:
+    return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE_WIDTH) > 0)
