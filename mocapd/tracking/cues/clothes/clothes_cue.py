@@ -114,8 +114,8 @@ class ClothesCue:
         """Classifies the pictures about the predicted body; None without a background or an appearance model, and while the
         legs rest, see `legs_rest`.
 
-        shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then of the frame set before, detected
-        less often, by half of the cameras at once, and not for new legs that silhouettes found, but for a single camera.
+        shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then of the frame set before, and detected
+        less often, by half of the cameras at once, or by all for new legs.
         """
         self.legs_rest = False
         if not self._knows_look:
@@ -153,8 +153,6 @@ class ClothesCue:
         present, work = self.cameras.present, self._solver.work
         if not self.alone:  # nothing else says how far away the arms are
             return self._legs.keypoints.take(present, self._ticks.last, TICK_S * work.network)
-        if is_new and not self._solver.first_legs.by_keypoints:
-            return ()
         if not is_new and self._legs.rests(self._ticks.last + 1, work.legs):
             return ()
         most = len(present) if is_new else (len(present) + 1) // 2

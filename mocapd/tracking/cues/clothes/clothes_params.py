@@ -185,7 +185,7 @@ class ClothesParams:
     guided_iterations: int = 3
     guided_joints_s: float = 3 / 30  # between two keypoint detections
     guided_look_s: float = 4 / 30  # between two updates of one camera's appearance model
-    guided_joint_after_s: float = 1.0  # since the legs were found by silhouettes
+    new_legs_s: float = 1.0  # legs as new as this never rest, and have keypoints of all cameras
     guided_sd_m: float = 0.01
     guided_depth_sd_m: float = 0.015  # along the line of sight of a single camera
     guided_sd_rad: float = 0.03

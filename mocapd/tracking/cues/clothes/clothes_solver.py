@@ -93,7 +93,7 @@ class ClothesSolver:
         self.silhouettes = Fitter(model, silhouette_labels(model), rig.cameras, scales, p.fit, each)
         self.terms = PoseTerms(self.model, len(rig.cameras), p)
         self.cameras = CameraViews(self.fitter, p)
-        self.first_legs = FirstLegs(self.silhouettes, self.terms, self.appearance, self.cameras, p)
+        self._first_legs = FirstLegs(self.silhouettes, self.terms, self.appearance, self.cameras, p)
         self._hypotheses = HypothesisTests(p)
         self._feet = PlantedFeet(self.model.rest_m, p.feet)
         self.work = OptionalWork()
@@ -115,7 +115,6 @@ class ClothesSolver:
         """Forget background and look."""
         self.cameras.reset()
         self.appearance.forget(self.cameras)
-        self.first_legs.reset()
         self._hypotheses.reset()
         self._feet.reset()
 
@@ -223,7 +222,7 @@ class ClothesSolver:
         if not cameras.has_appearance:
             cameras.mark_body(start)
             cameras.renew_before(self.searches_everywhere(ticks))
-            found = self.first_legs.find(start, dt_s, trunk_prior, iterations, is_new, ticks)
+            found = self._first_legs.find(start, dt_s, trunk_prior, iterations, is_new, ticks)
             return None if found is None else self._estimate(found, last, dt_s)
         if observed is None:
             views, rays = cameras.prepare(start, self.searches_everywhere(ticks), no_detection)

@@ -21,7 +21,7 @@ LEGS = [INDEX[side + bone] for side in SIDES for bone in ("LowerLeg", "Foot")]
 
 
 class FirstLegs:
-    """Finds them, and teaches the wearer's appearance. by_keypoints: keypoints found the last ones."""
+    """Finds them, and teaches the wearer's appearance."""
 
     def __init__(
         self,
@@ -35,11 +35,6 @@ class FirstLegs:
         self._silhouettes, self._terms, self._params = silhouettes, terms, params
         self._appearance, self._cameras = appearance, cameras
         self._enough = min(_CAMERAS, len(cameras.each))
-        self.reset()
-
-    def reset(self) -> None:
-        """Forget how the last ones were found."""
-        self.by_keypoints = False
 
     def find(
         self,
@@ -59,7 +54,6 @@ class FirstLegs:
         if is_new and ticks.due(p.first_keypoints_s):
             found = self._by_keypoints(start, dt_s, trunk_prior, iterations)
             if found is not None:
-                self.by_keypoints = True
                 return found
         if is_new and not ticks.due(p.first_silhouettes_s):
             return None

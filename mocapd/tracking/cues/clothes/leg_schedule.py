@@ -68,4 +68,4 @@ class LegSchedule:
 
 def are_new_legs(t_ns: int, since_ns: int | None, params: ClothesParams) -> bool:
     """True if the legs were found a moment ago, at since_ns; None: not yet."""
-    return since_ns is None or t_ns - since_ns <= nanoseconds(params.guided_joint_after_s)
+    return since_ns is None or t_ns - since_ns <= nanoseconds(params.new_legs_s)

@@ -1,6 +1,7 @@
 """The first legs of a wearer of the shirt who is in view from the start, and has not moved."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from mocapd.body.skeleton import INDEX
 from mocapd.geometry.camera_model import centre, project
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.setup import setup_of
+from mocapd.tracking.cues.keypoints.keypoint_detection import CameraKeypoints, KeypointDetectors
 from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import BodyState, FrameSet, Rig
 from tests.sim.simulated_calibration import calibration_of_setup
@@ -43,6 +45,25 @@ def test_they_are_found_at_once(filmed: Filmed, pose_database: PoseDatabase) -> 
     assert found[-1].joints_m is not None
     off_m = np.linalg.norm(found[-1].joints_m - filmed.joints_m[AT_ONCE - 1], axis=1)[LEGS]
     assert off_m.max() < 0.12
+
+
+def test_keypoints_are_detected_of_new_ones_at_once_in_a_known_room_too(
+    filmed: Filmed, pose_database: PoseDatabase, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # silhouettes find those; who walks in has often crossed legs, which keypoints alone tell apart
+    cameras: list[int] = []
+    detect = KeypointDetectors.detect
+
+    def counted(detectors: KeypointDetectors, *args: Any) -> CameraKeypoints | None:
+        cameras.append(args[-1])
+        return detect(detectors, *args)
+
+    monkeypatch.setattr(KeypointDetectors, "detect", counted)
+    sets = filmed.frame_sets([*filmed.empty, *filmed.pictures[:AT_ONCE]])
+    carriers = [body.tracker for body in bodies(filmed, pose_database, sets)]
+    seen = carriers.count("shirt+clothes")
+    assert seen >= AT_ONCE // 2
+    assert min(map(cameras.count, (0, 1))) >= (seen - 1) // 3
 
 
 def test_one_camera_finds_them_across_its_view(filmed: Filmed, pose_database: PoseDatabase) -> None:
