@@ -60,11 +60,11 @@ def read_jpeg(
     of it is no picture. Raises MalformedError, also for a file that is cut short: nothing is decoded in part.
     """
     small = frozen_pixels(decode_camera_picture(data, size_px, REDUCTIONS[reduced_by]))
-    w, h = jpeg_header(np.frombuffer(data, np.uint8).data).size_px
-    if len(data) > 3 * w * h:
-        whole = small if reduced_by == 1 else frozen_pixels(decode_camera_picture(data, size_px))
-        return whole
+    file = np.frombuffer(data, np.uint8)  # flat, whatever the shape of the buffer
+    w, h = jpeg_header(file.data).size_px
+    if len(file) > 3 * w * h:
+        return small if reduced_by == 1 else frozen_pixels(decode_camera_picture(data, size_px))
     if small.shape[:2] != (-(-h // reduced_by), -(-w // reduced_by)):
         w, h = h, w  # one that says it was taken upright is turned by the decoder
-    encoded = data if isinstance(data, bytes) else data.tobytes()
+    encoded = data if isinstance(data, bytes) else file.tobytes()
     return JpegPicture(encoded, small, reduced_by, (w, h))

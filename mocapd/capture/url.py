@@ -120,7 +120,7 @@ class UrlSource:
             if not self._is_mjpg:
                 return Frame(self.name, seq, t_ns, frozen_pixels(raw))
             try:
-                picture = read_jpeg(frozen_pixels(raw).ravel(), reduced_by=self._reduced_by)
+                picture = read_jpeg(frozen_pixels(raw), reduced_by=self._reduced_by)
             except MalformedError:
                 self.torn += 1
                 if t_ns - began_ns < _TORN_LIMIT_NS:

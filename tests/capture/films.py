@@ -90,3 +90,10 @@ def taken_upright(jpeg: bytes) -> bytes:
         b"\xff\xe1\x00\x22Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x06\0\0\0\0\0\0\0"
     )
     return jpeg[:2] + exif + jpeg[2:]
+
+
+def smooth_jpeg(size_px: tuple[int, int]) -> bytes:
+    """Blurred noise: like a room, it has all colours and no pixel unlike its neighbours."""
+    noise = np.random.default_rng(5).integers(0, 256, (size_px[1], size_px[0], 3), np.uint8)
+    smooth = cv2.normalize(cv2.GaussianBlur(noise, (0, 0), 6.0), None, 0, 255, cv2.NORM_MINMAX)  # type: ignore[call-overload]
+    return cv2.imencode(".jpg", smooth)[1].tobytes()

@@ -8,16 +8,10 @@ from mocapd.boundary.image_decoding import REDUCTIONS, decode_camera_picture
 from mocapd.capture.jpeg_picture import JpegPicture, read_jpeg
 from mocapd.errors import MalformedError
 from mocapd.types import Bytes, Frame
-from tests.capture.films import taken_upright
+from tests.capture.films import smooth_jpeg, taken_upright
 
+SIZE_PX = (322, 242)
 SMALLER = [by for by in REDUCTIONS if by > 1]
-
-
-def jpeg(size_px: tuple[int, int] = (322, 242), quality: int = 95) -> bytes:
-    """Blurred noise: like a room, it has all colours and no pixel unlike its neighbours."""
-    noise = np.random.default_rng(5).integers(0, 256, (size_px[1], size_px[0], 3), np.uint8)
-    smooth = cv2.normalize(cv2.GaussianBlur(noise, (0, 0), 6.0), None, 0, 255, cv2.NORM_MINMAX)  # type: ignore[call-overload]
-    return cv2.imencode(".jpg", smooth, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
 
 
 def frame(data: bytes | Bytes, reduced_by: int) -> Frame:
@@ -26,7 +20,7 @@ def frame(data: bytes | Bytes, reduced_by: int) -> Frame:
 
 @pytest.mark.parametrize("by", SMALLER)
 def test_small_pictures_are_the_whole_one_averaged(by: int) -> None:
-    data = jpeg()
+    data = smooth_jpeg(SIZE_PX)
     one = frame(data, by)
     small, smaller = one.small(by)
     assert smaller == by
@@ -42,7 +36,7 @@ def test_small_pictures_are_the_whole_one_averaged(by: int) -> None:
 
 @pytest.mark.parametrize("by", SMALLER)
 def test_who_asks_for_the_whole_picture_gets_it(by: int) -> None:
-    data = jpeg()
+    data = smooth_jpeg(SIZE_PX)
     whole = decode_camera_picture(data)
     assert np.array_equal(frame(data, by).pixels, whole)
     assert frame(data, by).encoded == data
@@ -57,7 +51,7 @@ def test_who_asks_for_the_whole_picture_gets_it(by: int) -> None:
 
 
 def test_a_cut_file_is_refused_at_every_size() -> None:
-    data = jpeg((64, 48))
+    data = smooth_jpeg((64, 48))
     for end in range(0, len(data) - 2, 7):
         for by in REDUCTIONS:
             with pytest.raises(MalformedError):
@@ -65,7 +59,7 @@ def test_a_cut_file_is_refused_at_every_size() -> None:
 
 
 def test_a_damaged_file_is_good_or_bad_whatever_its_size() -> None:
-    data, rng = jpeg((64, 48)), np.random.default_rng(3)
+    data, rng = smooth_jpeg((64, 48)), np.random.default_rng(3)
     for _ in range(200):
         spoilt = bytearray(data)
         for at in rng.integers(0, len(data), 3):
@@ -82,7 +76,7 @@ def test_a_damaged_file_is_good_or_bad_whatever_its_size() -> None:
 
 @pytest.mark.parametrize("by", list(REDUCTIONS))
 def test_a_picture_that_was_taken_upright_is_turned(by: int) -> None:
-    one = frame(taken_upright(jpeg((322, 242))), by)
+    one = frame(taken_upright(smooth_jpeg(SIZE_PX)), by)
     assert one.size_px == one.pixels.shape[1::-1] == (242, 322)
 
 

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import cv2
 import numpy as np
 import pytest
 
@@ -10,21 +9,16 @@ from mocapd.capture.jpeg_picture import read_jpeg
 from mocapd.errors import ConfigError
 from mocapd.tracking.pictures import Pictures
 from mocapd.types import Bytes, Frame, FrameSet
+from tests.capture.films import smooth_jpeg
 from tests.geometry.rigs import ring
 
 CAMERA = replace(ring(1)[0], size_px=(648, 482))  # whose quarter has odd sides
 
 
-def jpeg() -> bytes:
-    noise = np.random.default_rng(5).integers(0, 256, (482, 648, 3), np.uint8)
-    smooth = cv2.normalize(cv2.GaussianBlur(noise, (0, 0), 5.0), None, 0, 255, cv2.NORM_MINMAX)  # type: ignore[call-overload]
-    return cv2.imencode(".jpg", smooth)[1].tobytes()
-
-
 def loaded(work_width_px: int, reduced_by: int) -> tuple[Bytes, Bytes]:
     """The work picture and the grey one."""
     pictures = Pictures([CAMERA], work_width_px)
-    frame = Frame(CAMERA.name, 0, 7, read_jpeg(jpeg(), reduced_by=reduced_by))
+    frame = Frame(CAMERA.name, 0, 7, read_jpeg(smooth_jpeg(CAMERA.size_px), reduced_by=reduced_by))
     pictures.load(FrameSet(7, {CAMERA.name: frame}))
     return pictures.each[0].bgr, pictures.grey(0)
 
@@ -44,7 +38,7 @@ def test_a_picture_decoded_smaller_gives_the_same_work_picture(
 def test_a_picture_of_another_size_than_its_calibration_is_refused_decoded_smaller_or_not() -> None:
     pictures = Pictures([replace(CAMERA, size_px=(640, 480))], 320)
     for by in (1, 2):
-        frame = Frame(CAMERA.name, 0, 7, read_jpeg(jpeg(), reduced_by=by))
+        frame = Frame(CAMERA.name, 0, 7, read_jpeg(smooth_jpeg(CAMERA.size_px), reduced_by=by))
         with pytest.raises(ConfigError, match="delivers 648x482"):
             pictures.load(FrameSet(7, {CAMERA.name: frame}))
 

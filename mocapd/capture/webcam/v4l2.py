@@ -294,7 +294,7 @@ def decode(
             return None
         return frozen_pixels(cv2.cvtColor(raw.reshape(height, width, 2), cv2.COLOR_YUV2BGR_YUY2))
     try:
-        picture = read_jpeg(np.asarray(raw, dtype=np.uint8).ravel(), size_px, reduced_by)
+        picture = read_jpeg(np.asarray(raw, dtype=np.uint8), size_px, reduced_by)
     except MalformedError:
         return None
     # one that says it was taken upright is turned by the decoder
