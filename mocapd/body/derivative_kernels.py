@@ -1,16 +1,16 @@
 """Derivatives of points of the posed body by the pose step and the shape factors: rows of Jacobians."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import Articulation, PosedJoints
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def joint_shape_derivatives(parents: Ints, d_rest: Array, R: Array, out: Array) -> None:
     """d posed joints / d factor: out (N,J,3) from d_rest (N,J,3); the root does not move."""
     for n in range(d_rest.shape[0]):
@@ -26,7 +26,7 @@ def joint_shape_derivatives(parents: Ints, d_rest: Array, R: Array, out: Array) 
                     out[n, j, i] = value
 
 
-@njit(cache=True, nogil=True, fastmath=True, inline="always")
+@kernel(fastmath=True, inline="always")
 def add_turns(
     bone: int,
     x: float,
@@ -62,7 +62,7 @@ def add_turns(
         j = parents[j]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def joint_row(
     joint: int, g: Array, articulation: Articulation, posed: PosedJoints, out: Array
 ) -> None:
@@ -78,7 +78,7 @@ def joint_row(
     )
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def surface_row(
     point: Array,
     point_bones: NDArray[np.int32],

@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -24,7 +25,7 @@ class JointLimits(NamedTuple):
     upper_rad: Array  # (G,3)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def limit_residuals(
     local: Array,
     limits: JointLimits,

@@ -6,16 +6,16 @@ frame. A group is one joint, or several that share a bend (the spine), each taki
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays, PosedJoints, SkinArrays
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def quat_multiply(a: Array, b: Array, out: Array) -> None:
     """out = a * b (xyzw)."""
     ax, ay, az, aw = a[0], a[1], a[2], a[3]
@@ -26,13 +26,13 @@ def quat_multiply(a: Array, b: Array, out: Array) -> None:
     out[3] = aw * bw - ax * bx - ay * by - az * bz
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def quat_inverse(q: Array, out: Array) -> None:
     """The conjugate of a unit quaternion."""
     out[0], out[1], out[2], out[3] = -q[0], -q[1], -q[2], q[3]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def quat_exp(x: float, y: float, z: float, out: Array) -> None:
     """Rotation vector [rad] to a quaternion."""
     angle = np.sqrt(x * x + y * y + z * z)
@@ -40,7 +40,7 @@ def quat_exp(x: float, y: float, z: float, out: Array) -> None:
     out[0], out[1], out[2], out[3] = x * s, y * s, z * s, np.cos(0.5 * angle)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def quat_log(q: Array, out: Array) -> None:
     """Quaternion to a rotation vector (3,) [rad] of angle at most pi."""
     s = np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2])
@@ -49,7 +49,7 @@ def quat_log(q: Array, out: Array) -> None:
     out[0], out[1], out[2] = q[0] * f, q[1] * f, q[2] * f
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def quat_matrix(q: Array, out: Array) -> None:
     """Unit quaternion to a matrix (3,3)."""
     x, y, z, w = q[0], q[1], q[2], q[3]
@@ -64,7 +64,7 @@ def quat_matrix(q: Array, out: Array) -> None:
     out[2, 2] = 1 - 2 * (x * x + y * y)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def retract(
     root: Array,
     local: Array,
@@ -99,7 +99,7 @@ def retract(
             out_local[j, i] = result[i] / norm
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def difference(
     root_a: Array,
     local_a: Array,
@@ -124,7 +124,7 @@ def difference(
             out[3 + 3 * g + i] = vector[i] / share_of_joint[j]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def forward_kinematics(
     parents: Ints,
     rest: Array,
@@ -151,7 +151,7 @@ def forward_kinematics(
         quat_matrix(out_global[j], out_R[j])
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def skin_and_project(
     vertices: Array,
     skin: SkinArrays,

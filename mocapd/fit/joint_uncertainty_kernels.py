@@ -1,16 +1,16 @@
 """Compiled derivatives of the joint centres by the pose parameters, and what a covariance of those makes of them."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.posing_kernels import quat_matrix
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def joint_jacobian(
     parents: Ints,
     group_of_joint: Ints,
@@ -54,7 +54,7 @@ def joint_jacobian(
             above = parents[above]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def place_variances(jacobian: Array, covariance: Array, out: Array) -> None:
     """Trace of each joint's covariance: out (J,) from jacobian (J,3,P) and covariance (P,P)."""
     J, _, P = jacobian.shape
@@ -78,7 +78,7 @@ def place_variances(jacobian: Array, covariance: Array, out: Array) -> None:
         out[j] = total
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def add_unmodelled_turns(
     parents: Ints, group_of_joint: Ints, turn_sd: Array, joints: Array, out: Array
 ) -> None:

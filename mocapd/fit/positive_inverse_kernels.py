@@ -2,12 +2,12 @@
 half as long again or longer, and scipy's LAPACK takes a fifth of a second to import."""
 
 import numpy as np
-from numba import njit
 
+from mocapd.kernels.decorator import kernel
 from mocapd.types import Floats
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def invert_positive(matrix: Floats) -> bool:
     """Inverts a symmetric positive definite matrix (N,N) in place; reads its lower triangle. False: it is not positive
     definite, and its values are lost.
@@ -41,7 +41,7 @@ def invert_positive(matrix: Floats) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def solve_positive(matrix: Floats, right: Floats) -> None:
     """Solves matrix (N,N) x = right (N,), symmetric and positive definite, in place: right becomes x. Reads the lower
     triangle, whose values are lost. An unknown whose pivot is not positive, by rounding or for want of rows, is 0.

@@ -1,16 +1,16 @@
 """Points on rays of one camera, and where they show in the picture of another one."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _shown(camera: CameraArrays, x: float, y: float, z: float, out: Array) -> None:
     """Fill out (2,) with where a point of the world shows, NaN behind the camera; see `camera_model.project`."""
     R, t, K, dist = camera
@@ -27,7 +27,7 @@ def _shown(camera: CameraArrays, x: float, y: float, z: float, out: Array) -> No
     out[1] = K[1, 1] * (v * radial + p1 * (r2 + 2.0 * v * v) + 2.0 * p2 * u * v) + K[1, 2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def shown_on_rays(
     camera: CameraArrays, origin_m: Array, along: Array, distance_m: Array, out: Array
 ) -> None:
@@ -41,7 +41,7 @@ def shown_on_rays(
             _shown(camera, x, y, z, out[n, k])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def evenly_between(one: Array, other: Array, out: Array) -> None:
     """Fill out (N,K,2) with places that lead in even steps from `one` to `other` (N,2)."""
     last = out.shape[1] - 1
@@ -52,7 +52,7 @@ def evenly_between(one: Array, other: Array, out: Array) -> None:
                 out[n, k, i] = one[n, i] + share * (other[n, i] - one[n, i])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def taken_at(y: Ints, x: Ints, scale: int, rays: Array, pixels: Array, out: Array) -> None:
     """Fill pixels (N,2) with the middles of work pixels (N,) in the pictures as delivered, and out (N,3) with their unit
     vectors of rays (h,w,3)."""
@@ -62,7 +62,7 @@ def taken_at(y: Ints, x: Ints, scale: int, rays: Array, pixels: Array, out: Arra
             out[n, i] = rays[y[n], x[n], i]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def distances_of_triangles(
     triangle: Ints,
     bones: NDArray[np.int32],

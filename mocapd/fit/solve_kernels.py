@@ -4,7 +4,6 @@ proportions, and solved. One call, as a frame has dozens of steps; each prior is
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.joint_limit_kernels import JointLimits
@@ -13,6 +12,7 @@ from mocapd.fit.positive_inverse_kernels import solve_positive
 from mocapd.fit.priors.held_pose_kernels import pull_back
 from mocapd.fit.priors.joint_limit_term_kernels import keep_in_limits
 from mocapd.fit.priors.tilt_kernels import set_upright
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ class PosePriors(NamedTuple):
     tilt_information: float
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _shape_step(
     A: Array,
     g: Array,
@@ -55,7 +55,7 @@ def _shape_step(
     return step
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def gauss_newton_step(
     H: Array,
     b: Array,
@@ -93,11 +93,11 @@ def gauss_newton_step(
     keep_in_limits(local, limits, limit_information, A, g)
     if n_pose < P:
         shape_step = _shape_step(A, g, n_pose, shape_offset, shape_information, shape_room)
-        for p in range(n_pose):
-            for i in range(P - n_pose):
+        for i in range(P - n_pose):
+            for p in range(n_pose):
                 g[p] -= A[p, n_pose + i] * shape_step[i]
+            g[n_pose + i] = shape_step[i]
         A = A[:n_pose, :n_pose].copy()
-        g[n_pose:] = shape_step
     for p in range(n_pose):
         for q in range(n_pose):
             A[p, q] += motion_information[p, q]

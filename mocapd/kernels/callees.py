@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 from numba.core.dispatcher import Dispatcher
 
+from mocapd.kernels.decorator import OPTIONS
+
 PythonFunction = Callable[..., Any]
 
 _LOAD_GLOBAL = dis.opmap["LOAD_GLOBAL"]
@@ -31,7 +33,7 @@ def content_of(function: PythonFunction) -> str:
 
     The named tuples that it takes are of it with their modules: numba cannot read code compiled for one that has moved.
     """
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(repr(OPTIONS).encode())
     for line in _decorator(function.__code__):
         digest.update(line.encode())
     for code in _codes(function.__code__):

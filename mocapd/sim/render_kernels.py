@@ -1,9 +1,9 @@
 """A z-buffer renderer of its own; the tracker's id-map rasteriser shares nothing with it."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.sim.person.dress_kernels import FLAT, Dress, surface_colour
 from mocapd.types import Floats, Singles
 
@@ -11,7 +11,7 @@ _NEAR_M = 0.10
 _MOST_OUTSIDE = 1.5  # of the picture's half diagonal, from its middle
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def project_vertices(
     vertices: Floats,
     R: Floats,
@@ -54,7 +54,7 @@ def project_vertices(
     return left, top, right, bottom
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def rasterise(
     points: Floats, triangles: NDArray[np.int32], shift_x: float, shift_y: float,
     nearness: Singles, owner: NDArray[np.int32], weights: Singles,
@@ -101,7 +101,7 @@ def rasterise(
                 t += dt
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def accumulate(
     triangles: NDArray[np.int32], albedo: Floats, irradiance: Singles, nearness: Singles,
     owner: NDArray[np.int32], weights: Singles, box: tuple[int, int, int, int], share: float,
@@ -140,7 +140,7 @@ def accumulate(
             owner[y, x] = -1
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def draw_depth(
     vertices: Floats, triangles: NDArray[np.int32], view: Floats, points: Floats, depth: Singles
 ) -> None:

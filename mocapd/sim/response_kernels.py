@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from mocapd.kernels.decorator import kernel
 from mocapd.sim.person.figure_kernels import shadow_at
 from mocapd.sim.scenery.pattern_kernels import hash01
 from mocapd.types import Bytes, Floats, Singles
@@ -30,7 +30,7 @@ class Sensor(NamedTuple):
     curve: Bytes
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def shade_room(points: Singles, views: Floats, depths: Singles, step: int, out: Singles) -> None:
     """The person's shadow on the room: out (L,H/step,W/step) 0..1, points (H,W,3) in the world [m]."""
     for j in range(out.shape[1]):
@@ -45,7 +45,7 @@ def shade_room(points: Singles, views: Floats, depths: Singles, step: int, out: 
                 out[k, j, i] = dark
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def expose(
     room: Singles, layers: Singles, levels: Singles, shade: Singles, person: PersonLayer,
     sensor: Sensor, noise_key: int, out: Bytes,

@@ -1,10 +1,10 @@
 """How far each bone goes on the way to where it was found."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.posing_kernels import quat_exp, quat_inverse, quat_log, quat_multiply
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
@@ -15,7 +15,7 @@ _LEAST = 0.05  # share of its way that noise goes
 _FAST_HZ = 10.0  # what goes this many times as far as noise in a second surely moves
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _turn_between(one: Array, other: Array, inverse: Array, between: Array, out: Array) -> None:
     """The rotation vector (3,) [rad] that leads from `one` to `other` (4,); inverse, between (4,) are scratch."""
     quat_inverse(one, inverse)
@@ -23,7 +23,7 @@ def _turn_between(one: Array, other: Array, inverse: Array, between: Array, out:
     quat_log(between, out)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def moving_share(way: Array, speed: float, memory: Array, ticks: float, noise: float) -> float:
     """How much of a step is motion, above 0 to 1, by what speaks most for motion rather than noise.
 
@@ -49,7 +49,7 @@ def moving_share(way: Array, speed: float, memory: Array, ticks: float, noise: f
     return share
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def follow_bones(
     found_xyzw: Array,
     last_xyzw: Array,

@@ -1,11 +1,12 @@
 """The static background of one camera: learned beside the body, followed when its light jumps."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 
-@njit(cache=True, nogil=True)
+
+@kernel
 def learn_background(
     picture: NDArray[np.uint8],
     body: NDArray[np.uint8],
@@ -39,7 +40,7 @@ def learn_background(
             old[i] += share[i] * (np.float32(new[i]) - old[i])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def learn_unknown(
     picture: NDArray[np.uint8],
     body: NDArray[np.uint8],
@@ -65,7 +66,7 @@ def learn_unknown(
             age[y, x] += 1
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def changed(
     picture: NDArray[np.uint8],
     body: NDArray[np.uint8],

@@ -1,13 +1,14 @@
 """What stands before a known background, and its shadow."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 BACKGROUND, BEFORE, UNKNOWN, SHADOW, CLOTH_OR_SHADOW = 0, 1, 2, 3, 4
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def stands_before(
     picture: NDArray[np.uint8],
     mean: NDArray[np.float32],
@@ -59,7 +60,7 @@ def stands_before(
                 out[y, x] = CLOTH_OR_SHADOW
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def label_cleaned(
     first: NDArray[np.uint8],
     cleaned: NDArray[np.uint8],

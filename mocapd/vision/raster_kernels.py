@@ -1,8 +1,9 @@
 """Z-buffer rasteriser for id maps: which triangle is seen at each pixel of a small image region."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
@@ -11,14 +12,14 @@ _FAR = np.float32(1e9)  # [m]
 _LANES = 4  # pixels that are drawn at once
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def triangle_middle(xy: Array, triangles: NDArray[np.int32], t: int) -> tuple[float, float]:
     """The mean of the vertices (V,2) of triangle t, where these are drawn [px]."""
     a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
     return (xy[a, 0] + xy[b, 0] + xy[c, 0]) / 3.0, (xy[a, 1] + xy[b, 1] + xy[c, 1]) / 3.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def bounds(xy: Array, depth: Array, least_m: float) -> tuple[int, float, float, float, float]:
     """How many of the vertices xy (V,2) [px] are farther away than least_m, by their depth (V,) [m], and the box of these:
     least x, least y, largest x, largest y."""
@@ -31,7 +32,7 @@ def bounds(xy: Array, depth: Array, least_m: float) -> tuple[int, float, float, 
     return n, x0, y0, x1, y1
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def rasterise(
     xy: Array,
     depth: Array,
@@ -60,13 +61,13 @@ def rasterise(
             triangle_at[y, x] = np.int32(there)
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def _nearness(z: np.float32, t: int) -> np.int64:
     """Depth z >= 0 and triangle t as one number: the nearer, and of two at one place the first one, has the smaller."""
     return np.int64(np.float32(z).view(np.int32)) << 32 | np.int64(np.uint32(t))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _list_shown(
     xy: Array,
     depth: Array,
@@ -97,7 +98,7 @@ def _list_shown(
     return n
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def _draw(
     xy: Array,
     depth: Array,
@@ -137,7 +138,7 @@ def _draw(
             nearest[first + k] = min(nearest[first + k], here)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def label_triangles(
     triangle_at: NDArray[np.int32], label: NDArray[np.uint8], out: NDArray[np.uint8]
 ) -> None:

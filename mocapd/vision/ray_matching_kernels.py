@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.types import Bytes
 
 Array = NDArray[np.float64]
@@ -29,7 +29,7 @@ class PatchLabels(NamedTuple):
     block_px: int
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _place(shape: tuple[int, int], x: float, y: float, half: int) -> tuple[int, Weights]:
     """Where in a picture's pixels, all in one row, the patch about x, y begins, -1 where it leaves the picture; and the
     weights of the four pixels, two here and two below, that each of its own lies between."""
@@ -44,7 +44,7 @@ def _place(shape: tuple[int, int], x: float, y: float, half: int) -> tuple[int, 
     return (first if first + (2 * half + 1) * w + _LANES < h * w else -1), weights
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy", inline="always")
+@kernel(fastmath=True, error_model="numpy", inline="always")
 def _grey_at(
     pixels: NDArray[np.uint8], here: np.uint64, below: np.uint64, weights: Weights
 ) -> np.float32:
@@ -58,7 +58,7 @@ def _grey_at(
     )
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@kernel(fastmath=True, error_model="numpy")
 def _centred(
     pixels: NDArray[np.uint8],
     width: int,
@@ -87,7 +87,7 @@ def _centred(
     return length
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@kernel(fastmath=True, error_model="numpy")
 def _correlation(
     mine: Singles,
     pixels: NDArray[np.uint8],
@@ -116,7 +116,7 @@ def _correlation(
     return alike
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def match_along_rays(
     grey: NDArray[np.uint8],
     other: NDArray[np.uint8],

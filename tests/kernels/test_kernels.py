@@ -1,9 +1,11 @@
 """Which compiled code is still good, and the table of what a first start compiles."""
 
+import ast
 import dis
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,6 +13,7 @@ import numba
 import numpy as np
 import pytest
 
+import mocapd
 from mocapd.body.arrays import SkinArrays
 from mocapd.body.posing_kernels import quat_exp
 from mocapd.errors import MalformedError
@@ -205,3 +208,29 @@ def test_the_globals_of_a_kernel_are_those_that_dis_names() -> None:
         loads = (one for one in dis.get_instructions(code) if one.opname == "LOAD_GLOBAL")
         assert list(_global_names(code)) == [one.argval for one in loads]
     assert len(codes) > len(rows) > 100
+
+
+def test_no_kernel_assigns_an_array() -> None:
+    """To a part of another: numba would compile what words the error of unequal shapes, for two seconds in each process.
+    What is assigned to a slice is a constant."""
+    found = [
+        f"{path.name}:{node.lineno}"
+        for path in Path(mocapd.__file__).parent.rglob("*_kernels.py")
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.Assign)
+        and isinstance(node.targets[0], ast.Subscript)
+        and any(isinstance(part, ast.Slice) for part in ast.walk(node.targets[0].slice))
+        and any(
+            isinstance(name, ast.Name) and name.id.islower() for name in _outside_calls(node.value)
+        )
+    ]
+    assert not found
+
+
+def _outside_calls(value: ast.expr) -> Iterator[ast.AST]:
+    """The parts of an expression but what functions take: `np.float32(limit)` is one number."""
+    if not isinstance(value, ast.Call | ast.Attribute):
+        yield value
+        for child in ast.iter_child_nodes(value):
+            if isinstance(child, ast.expr):
+                yield from _outside_calls(child)

@@ -1,5 +1,6 @@
 """Runs a graph of tasks in a few parallel processes, and estimates the progress."""
 
+import gc
 import multiprocessing
 import os
 import signal
@@ -198,6 +199,9 @@ def _work(pipe: Connection, tasks: Sequence[Task]) -> None:
     end_with_parent(parent.pid, signal.SIGKILL)
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
+    # It ends within a minute or two; until then what numba leaves (some 400 MB, all processes together) is not worth
+    # looking for: a tenth of all compiling.
+    gc.disable()
     try:
         pipe.send(_processor_share())
         niced = False

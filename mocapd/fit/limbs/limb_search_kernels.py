@@ -3,12 +3,12 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays, PosedJoints
 from mocapd.body.posing_kernels import quat_matrix, quat_multiply
 from mocapd.fit.terms.collision_kernels import ALONG, TorsoSlices, depth_in_torso
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 _EDGE_PX = 2  # by how much the rest of the body may be drawn beside where it is
@@ -27,7 +27,7 @@ class ArmSamples(NamedTuple):
     weights: Array
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def trunk_depths(
     hypotheses: Array,
     chain: NDArray[np.int64],
@@ -60,7 +60,7 @@ def trunk_depths(
             out[n] += depth * depth
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def pose_arm(
     hypothesis: Array,
     chain: NDArray[np.int64],
@@ -98,7 +98,7 @@ def pose_arm(
         quat_matrix(G[i], M[i])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def labels_beside(ids: NDArray[np.uint8], reach: int) -> NDArray[np.int32]:
     """Bit k of a pixel (h,w) is set where label k is in the square of `reach` pixels around it."""
     h, w = ids.shape
@@ -117,7 +117,7 @@ def labels_beside(ids: NDArray[np.uint8], reach: int) -> NDArray[np.int32]:
     return out
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def score_arms(
     hypotheses: Array,
     samples: ArmSamples,

@@ -1,15 +1,15 @@
 """The bones of a limb mirrored in depth: to one camera they look alike."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.posing_kernels import quat_inverse, quat_multiply
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _mirror(v: Array, ray: Array, out: Array) -> None:
     """v (3,) with its part along a unit vector (3,) turned round."""
     along = v[0] * ray[0] + v[1] * ray[1] + v[2] * ray[2]
@@ -17,7 +17,7 @@ def _mirror(v: Array, ray: Array, out: Array) -> None:
         out[i] = v[i] - 2.0 * along * ray[i]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def shortest_turn(a: Array, b: Array, out: Array) -> None:
     """Fill out (4,) with the smallest rotation that turns direction a (3,) into direction b (3,)."""
     scale = np.sqrt((a[0] ** 2 + a[1] ** 2 + a[2] ** 2) * (b[0] ** 2 + b[1] ** 2 + b[2] ** 2))
@@ -36,7 +36,7 @@ def shortest_turn(a: Array, b: Array, out: Array) -> None:
         out[i] /= length
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def mirrored_in_depth(
     joints_m: Array, globals_xyzw: Array, parent_xyzw: Array, eye_m: Array, out: Array
 ) -> None:

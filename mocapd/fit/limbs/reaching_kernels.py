@@ -1,23 +1,23 @@
 """Arms bent so that the hand comes to a place: elbows on a circle, and the rotations of two bones that lie so."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.posing_kernels import quat_exp, quat_inverse, quat_multiply
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 _LEAST = 1e-6
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _cross(a: Array, b: Array, out: Array) -> None:
     out[0] = a[1] * b[2] - a[2] * b[1]
     out[1] = a[2] * b[0] - a[0] * b[2]
     out[2] = a[0] * b[1] - a[1] * b[0]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _make_unit(v: Array) -> float:
     """Scale v (3,) to length 1, if it has any; its length."""
     length: float = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
@@ -26,7 +26,7 @@ def _make_unit(v: Array) -> float:
     return length
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def bend_to(
     hands_m: Array,
     shoulder_m: Array,
@@ -66,7 +66,7 @@ def bend_to(
                 lower[s, t, i] = far_m * towards[i] - upper[s, t, i]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _of_frame(x: Array, y: Array, z: Array, out: Array) -> None:
     """The rotation (4,) whose matrix has these columns (3,), by the largest of its four squared components."""
     w2, x2 = 1.0 + x[0] + y[1] + z[2], 1.0 + x[0] - y[1] - z[2]
@@ -86,7 +86,7 @@ def _of_frame(x: Array, y: Array, z: Array, out: Array) -> None:
         out[i] /= length
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def rotations_of_bends(
     upper: Array, lower: Array, side: float, upper_m: float, collar_xyzw: Array, out: Array
 ) -> None:

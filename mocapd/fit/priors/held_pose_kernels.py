@@ -1,13 +1,14 @@
 """A pose held to another one, to its prediction or to where people usually are, by an information matrix."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def pull_back(information: Array, away: Array, b: Array) -> None:
     """Add information (n,n) times away (n,), from the pose to the other one, to the first of b (P,); n is a multiple of
     three, and three sums that are made beside each other take a third of the time of one."""

@@ -1,15 +1,15 @@
 """Joints stay within their limits, softly."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.joint_limit_kernels import JointLimits, limit_residuals
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def keep_in_limits(
     local_xyzw: Array, limits: JointLimits, information: float, H: Array, b: Array
 ) -> None:

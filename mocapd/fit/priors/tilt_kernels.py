@@ -1,13 +1,14 @@
 """Hips are upright, more or less: before cameras that hardly see along their views nothing else says how a body leans."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def set_upright(hips_xyzw: Array, information: float, H: Array, b: Array) -> None:
     """Add information [1/rad^2] of the rotation vector, in the world, by which the hips lean: of Y over to where they point
     up."""

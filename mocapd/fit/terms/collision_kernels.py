@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -35,7 +36,7 @@ class ArmChains(NamedTuple):
     top: int
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def depth_in_torso(
     point: Array,
     hips: Array,
@@ -79,7 +80,7 @@ def depth_in_torso(
     return depth
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def push_arms_out(
     R: Array,
     joints: Array,

@@ -1,15 +1,15 @@
 """Where the body as drawn is nearer or farther than what is seen there."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.vision.raster_kernels import NOTHING
 
 _WELL_BEFORE = 2.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def compare_depths(
     drawn_m: NDArray[np.float32],
     triangle_at: NDArray[np.int32],

@@ -10,10 +10,10 @@ picture (`pull_triangles`), and each triangle gives two rows of the normal equat
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.fit.terms.nearest_pixel_kernels import CELL, labels_in_reach, nearest, nearest_hidden
+from mocapd.kernels.decorator import kernel
 from mocapd.types import Bytes
 from mocapd.vision.raster_kernels import triangle_middle
 
@@ -65,7 +65,7 @@ class AreaCounts(NamedTuple):
     unexplained: Array
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def pull_triangles(
     pictures: ComparedPictures,
     search: Search,
@@ -154,7 +154,7 @@ def pull_triangles(
     return cost
 
 
-@njit(cache=True, nogil=True, fastmath=True, inline="always")
+@kernel(fastmath=True, inline="always")
 def _pull_robustly(
     pull: Array, dx: float, dy: float, grid_px: float, weight: float, r2_robust: float
 ) -> float:
@@ -165,7 +165,7 @@ def _pull_robustly(
     return weight * r * r * f
 
 
-@njit(cache=True, nogil=True, fastmath=True, inline="always")
+@kernel(fastmath=True, inline="always")
 def _pull(pull: Array, dx: float, dy: float, weight: float, r: float) -> None:
     """Add a row along dx, dy by r work px to `pull` (5,)."""
     inverse = 1.0 / max(np.sqrt(dx * dx + dy * dy), 1e-3)

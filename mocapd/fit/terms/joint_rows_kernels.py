@@ -3,19 +3,19 @@
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import Articulation, PosedJoints
 from mocapd.body.derivative_kernels import joint_row
 from mocapd.fit.terms.point_rows_kernels import add_row
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 _NEAREST_M = 0.2
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def pull_at_joints(
     seen: Ints,
     xy: Array,
@@ -85,7 +85,7 @@ def pull_at_joints(
     return cost
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def turn_level(
     first: Ints,
     second: Ints,
@@ -99,7 +99,8 @@ def turn_level(
     """Add two rows for each pair of joints (N,) that pull the second as far from the first as apart_m (N,3) says, along x and
     z, wherever both are; the cost. information [1/m^2]."""
     joints = posed[2]
-    row, less = np.empty((2, 3 + 3 * articulation[3].shape[0]))
+    P = 3 + 3 * articulation[3].shape[0]
+    row, less = np.empty(P), np.empty(P)
     cost, along = 0.0, np.zeros(3)
     for n in range(first.shape[0]):
         for axis in range(0, 3, 2):

@@ -1,15 +1,16 @@
 """Pixels spread evenly over every region of every part of a drawn body."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 _IDS = 16  # as `surface_labels.MAX_LABELS`
 N_PARTS = 16  # of the body, fewer than that
 N_GROUPS = N_PARTS * _IDS
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _group(
     ids: NDArray[np.uint8],
     triangle_at: NDArray[np.int32],
@@ -30,7 +31,7 @@ def _group(
     return int(part[triangle_at[y, x]]) * _IDS + int(ids[y, x])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def spread_over_groups(
     ids: NDArray[np.uint8],
     triangle_at: NDArray[np.int32],

@@ -1,9 +1,9 @@
 """Where the nearest pixel of a label is, and whether there can be one."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.vision.raster_kernels import triangle_middle
 
 Array = NDArray[np.float64]
@@ -23,7 +23,7 @@ def offsets_by_distance(radius_px: int) -> NDArray[np.int32]:
     return inside
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def nearest(
     ids: NDArray[np.uint8],
     x: int,
@@ -42,7 +42,7 @@ def nearest(
     return -1
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def nearest_hidden(
     x: int,
     y: int,
@@ -64,7 +64,7 @@ def nearest_hidden(
     return found
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def labels_in_reach(ids: NDArray[np.uint8], radius: float) -> NDArray[np.int32]:
     """Bit k of a cell of CELL px is set where label k may be within `radius` [px] of the cell: spares
     the search where it must fail. Bit 0 tells nothing."""

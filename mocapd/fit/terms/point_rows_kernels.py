@@ -1,18 +1,18 @@
 """Rows of terms that pull at points of the body: at its ankles, at triangles of its surface."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import Articulation, PosedJoints, TriangleArrays
 from mocapd.body.derivative_kernels import joint_row, surface_row
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 _FEW = 1e-12
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def add_row(row: Array, residual: float, information: float, H: Array, b: Array) -> None:
     """One row (P,) to the normal equations H (P,P) and b (P,), of which it may be the first columns."""
     for p in range(row.shape[0]):
@@ -24,7 +24,7 @@ def add_row(row: Array, residual: float, information: float, H: Array, b: Array)
             H[p, q] += scaled * row[q]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def stand_on_floor(
     feet: Ints,
     heights_m: Array,
@@ -63,7 +63,7 @@ def stand_on_floor(
     return cost
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def hold_on_floor(
     held: Ints,
     places_m: Array,
@@ -91,7 +91,7 @@ def hold_on_floor(
     return cost
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def pull_along_rays(
     triangle: Ints,
     origin: Array,

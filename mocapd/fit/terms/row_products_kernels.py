@@ -1,13 +1,14 @@
 """The rows of a least-squares problem multiplied with each other."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})
+@kernel(fastmath={"reassoc", "contract"})
 def add_products(rows: Array, square: Array) -> None:
     """Add rows^T rows to square (P,P), which is symmetric, of rows (N,P).
 

@@ -1,11 +1,11 @@
 """The rows of the normal equations that pulls on the surface's triangles in a picture give."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import Articulation, PinholeArrays, PosedJoints, TriangleArrays
 from mocapd.fit.terms.row_products_kernels import add_products
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
@@ -13,7 +13,7 @@ _BLOCK = 128  # rows that are multiplied at a time
 _LEAST = 1e-9  # share of a triangle's weight below which a direction has none
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def add_triangle_rows(
     pulls: Array,
     centres: Array,

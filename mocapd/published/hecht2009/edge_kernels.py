@@ -1,14 +1,15 @@
 """Compiled pass of the edge image: clear gradients, their directions, and which of them move."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Shorts = NDArray[np.int16]
 FULL = 1024  # of what counts as a whole edge
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def mark_edges(
     dx: Shorts,
     dy: Shorts,

@@ -1,15 +1,16 @@
 """Poses of all particles of a limb, and which points are inside of their ellipsoids."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Singles = NDArray[np.float32]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _turn(R: Array, axis: Array, angle_rad: float, out: Array) -> None:
     """out (3,3) = R (3,3) times the rotation about a unit axis (3,), by Rodrigues' formula."""
     c, s = np.cos(angle_rad), np.sin(angle_rad)
@@ -25,7 +26,7 @@ def _turn(R: Array, axis: Array, angle_rad: float, out: Array) -> None:
         out[i, 2] = r0 * a02 + r1 * a12 + r2 * a22
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def pose_chain(
     angles_rad: Array,
     roots_R: Array,
@@ -57,7 +58,7 @@ def pose_chain(
                 _turn(R[n, e], axes[d], angles_rad[n, d], R[n, e])
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@kernel(fastmath=True, error_model="numpy")
 def share_inside(
     R: Array,
     at_m: Array,

@@ -7,14 +7,15 @@ distance to a colour is written out twice: as a function it made both four times
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 UInt8 = NDArray[np.uint8]
 Float32 = NDArray[np.float32]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def classify(
     pixels_bgr: UInt8,
     mask: UInt8,
@@ -68,7 +69,7 @@ def classify(
     return classified, foreground
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def classify_with_prior(
     pixels_bgr: UInt8,
     mask: UInt8,
@@ -129,7 +130,7 @@ def classify_with_prior(
     return classified, foreground
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def sum_colours(
     pixels_bgr: UInt8,
     ids: UInt8,

@@ -6,13 +6,14 @@ colour, grown by the truncation.
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 NO_SAMPLE = -1
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def bounding_boxes(ids: NDArray[np.uint8], boxes: NDArray[np.int64]) -> None:
     """boxes (11,4): x0, y0, x1, y1 (inclusive) of each id 0..10; x1 < x0 for an absent one."""
     h, w = ids.shape
@@ -30,7 +31,7 @@ def bounding_boxes(ids: NDArray[np.uint8], boxes: NDArray[np.int64]) -> None:
             box[2], box[3] = max(box[2], x - 1), y
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def nearest_rows(
     ids: NDArray[np.uint8], k: int, box: NDArray[np.int64], y0: int, y1: int, out: NDArray[np.int32]
 ) -> None:
@@ -49,7 +50,7 @@ def nearest_rows(
                 out[y, x] = below
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def distance_maps(
     ids: NDArray[np.uint8],
     limit_px: float,

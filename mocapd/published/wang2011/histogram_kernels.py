@@ -1,8 +1,9 @@
 """Integral histograms of chrominance over a coarse grid (paper §4; integral histogram: [Por05])."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 UInt8 = NDArray[np.uint8]
 UInt16 = NDArray[np.uint16]
@@ -12,7 +13,7 @@ BINS = DIVISIONS * DIVISIONS
 NO_BIN = 255
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def chrominance_bins(
     pixels_bgr: UInt8, mask: UInt8, mask_shift: int, step: int, min_sum: int, out: UInt8
 ) -> None:
@@ -46,7 +47,7 @@ def chrominance_bins(
             out[i, j] = red * (2 * DIVISIONS - red) + 2 * green + upside_down
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def integral_histogram(bins: UInt8, out: UInt16) -> None:
     """out (gh+1,gw+1,BINS): counts of each bin over the samples above and left of a corner."""
     out[0] = 0
@@ -64,7 +65,7 @@ def integral_histogram(bins: UInt8, out: UInt16) -> None:
                 here[n] = above[n] + row[n]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def uniformity(
     integral: UInt16, radii: NDArray[np.int64], bin_cap: float, out: NDArray[np.float32]
 ) -> None:

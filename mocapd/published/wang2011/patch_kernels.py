@@ -1,18 +1,18 @@
 """Compiled parts of the centroid method: patches on rendered and classified id maps, their derivatives."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import Articulation, PinholeArrays, PosedJoints, TriangleArrays
 from mocapd.body.derivative_kernels import surface_row
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
 Int32 = NDArray[np.int32]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def rendered_patches(
     triangle_at: Int32, patch: Bytes, samples: NDArray[np.int64], count: Array, centroid: Array
 ) -> None:
@@ -37,7 +37,7 @@ def rendered_patches(
             centroid[p, 1] /= count[p]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def classified_patches(
     ids: Bytes,
     nearest_yx: NDArray[np.int16],
@@ -72,7 +72,7 @@ def classified_patches(
             centroid[p, 1] /= count[p]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def inner_ids(triangle_at: Int32, colour: Bytes, out: Bytes) -> None:
     """Colour ids (h,w) of the rendered samples whose four neighbours have the same colour, else 0."""
     h, w = triangle_at.shape
@@ -92,7 +92,7 @@ def inner_ids(triangle_at: Int32, colour: Bytes, out: Bytes) -> None:
                 out[y, x] = c
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def centroid_rows(
     samples: NDArray[np.int64],
     wanted: NDArray[np.bool_],

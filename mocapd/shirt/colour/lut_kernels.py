@@ -6,8 +6,9 @@ are visited, so a new table costs less than classifying a small region exactly. 
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 UInt8 = NDArray[np.uint8]
 Float32 = NDArray[np.float32]
@@ -16,7 +17,7 @@ CELLS = 32
 TABLE_SIZE = CELLS**3  # index: red cell << 10 | green cell << 5 | blue cell
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def build_tables(
     upper: Float32,
     offset: Float32,
@@ -61,7 +62,7 @@ def build_tables(
                         ids[cell] = k + 1
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def _cell(row: UInt8, x: int) -> np.uint32:
     """The cell of pixel x of a row (W,3) BGR."""
     red = np.uint32(row[x, 2] >> 3) << np.uint32(10)
@@ -69,7 +70,7 @@ def _cell(row: UInt8, x: int) -> np.uint32:
     return red | green | np.uint32(row[x, 0] >> 3)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def classify_by_table(
     pixels_bgr: UInt8,
     mask: UInt8,

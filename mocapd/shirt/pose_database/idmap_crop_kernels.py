@@ -9,8 +9,9 @@ half of its pixels are coloured; a cell smaller than a pixel takes the pixel it 
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Bytes = NDArray[np.uint8]
 
@@ -20,7 +21,7 @@ TRIM = 0.01
 N_IDS = 11  # nothing and ten colours
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def trimmed_span(counts: NDArray[np.int64], total: int) -> tuple[int, int]:
     """First and last index of `counts` (n,) that keep all but TRIM of `total` on each side."""
     allowed = total * TRIM
@@ -36,7 +37,7 @@ def trimmed_span(counts: NDArray[np.int64], total: int) -> tuple[int, int]:
     return first, last
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def crop_window(ids: Bytes) -> tuple[float, float, float]:
     """Centre x, y [px, pixel centres at integers] and side [px] of the square; side 0: nothing is coloured."""
     h, w = ids.shape
@@ -59,7 +60,7 @@ def crop_window(ids: Bytes) -> tuple[float, float, float]:
     return 0.5 * (x0 + x1), 0.5 * (y0 + y1), MARGIN * max(x1 - x0 + 1, y1 - y0 + 1)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def resample(ids: Bytes, cx: float, cy: float, side: float, out: Bytes) -> None:
     """The square of this centre and side [px] as cells of out (SIZE,SIZE); outside of `ids` is nothing."""
     h, w = ids.shape
@@ -106,7 +107,7 @@ def crop_id_map(ids: Bytes) -> tuple[Bytes, float, tuple[float, float]]:
     return out, side / SIZE, (cx, cy)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def pack(ids: Bytes, out: Bytes) -> None:
     """Two ids to a byte: (SIZE,SIZE) into (SIZE*SIZE/2,)."""
     flat = ids.reshape(-1)
@@ -114,7 +115,7 @@ def pack(ids: Bytes, out: Bytes) -> None:
         out[i] = flat[2 * i] | (flat[2 * i + 1] << 4)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def unpack(packed: Bytes, out: Bytes) -> None:
     """The inverse of `pack`."""
     flat = out.reshape(-1)

@@ -1,9 +1,9 @@
 """A vector for an id map whose Euclidean distance follows the map distance: blurred colour planes."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.shirt.pose_database.idmap_crop_kernels import N_IDS, SIZE
 
 Bytes = NDArray[np.uint8]
@@ -14,7 +14,7 @@ COARSE = SIZE // BLOCK
 LENGTH = (N_IDS - 1) * COARSE * COARSE
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def describe_packed(maps: Bytes, out: Singles) -> None:
     """Raw descriptors out (N, LENGTH) of packed maps (N, SIZE*SIZE/2).
 

@@ -9,9 +9,9 @@ without any colour are at distance 0; a map with and one without are at 2 MISSIN
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.shirt.pose_database.idmap_crop_kernels import N_IDS, SIZE
 
 Bytes = NDArray[np.uint8]
@@ -20,7 +20,7 @@ Singles = NDArray[np.float32]
 MISSING = 100.0  # [px^2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def squared_distances(ids: Bytes, out: Singles) -> None:
     """out (N_IDS,h,w): squared distance [px^2] to the nearest pixel of each colour, at most MISSING.
 
@@ -63,7 +63,7 @@ def squared_distances(ids: Bytes, out: Singles) -> None:
                     result[x] = d if d < result[x] else result[x]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def from_packed(packed: Bytes, distances: Singles) -> float:
     """From a packed map to the one of `distances` (N_IDS, SIZE*SIZE): mean squared distance [px^2]."""
     total = np.float32(0.0)
@@ -79,7 +79,7 @@ def from_packed(packed: Bytes, distances: Singles) -> float:
     return float(total / count) if count > 0 else -1.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def sort_by_colour(ids: Bytes, xs: Singles, ys: Singles, start: NDArray[np.int64]) -> None:
     """Coordinates of the coloured pixels, colour by colour: those of c at start[c] : start[c + 1]."""
     h, w = ids.shape
@@ -100,7 +100,7 @@ def sort_by_colour(ids: Bytes, xs: Singles, ys: Singles, start: NDArray[np.int64
                 fill[c] += 1
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def to_points(
     xs: Singles,
     ys: Singles,
@@ -130,7 +130,7 @@ def to_points(
     return float(total / count) if count > 0 else -1.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def one_way_distances(
     query: Bytes,
     maps: Bytes,
@@ -151,7 +151,7 @@ def one_way_distances(
         one_way[n] = d if d >= 0.0 else (0.0 if is_empty else MISSING)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def nearest_in_order(
     query: Bytes,
     maps: Bytes,

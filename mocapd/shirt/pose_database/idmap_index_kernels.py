@@ -1,14 +1,15 @@
 """Compiled parts of the index over id maps."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Singles = NDArray[np.float32]
 Ints = NDArray[np.int64]
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def squared_gap(a: Singles, b: Singles) -> np.float32:
     """Squared Euclidean distance of two vectors."""
     total = np.float32(0.0)
@@ -18,7 +19,7 @@ def squared_gap(a: Singles, b: Singles) -> np.float32:
     return total
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def scan_cells(
     query: Singles, vectors: Singles, start: Ints, cells: Ints, index: Ints, gap: Singles
 ) -> int:

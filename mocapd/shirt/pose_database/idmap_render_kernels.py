@@ -3,12 +3,12 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import SkinArrays
 from mocapd.body.posing_kernels import forward_kinematics, quat_multiply, skin_and_project
 from mocapd.body.shaping import Shaped
+from mocapd.kernels.decorator import kernel
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, crop_window, pack, resample
 from mocapd.vision.raster_kernels import label_triangles, rasterise
 
@@ -26,7 +26,7 @@ class RenderedPoses(NamedTuple):
     side_rad: NDArray[np.float32]  # (N,) side of the crop [px] over the focal length
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def render_poses(
     local_xyzw: NDArray[np.float32],
     camera_from_root_xyzw: NDArray[np.float32],

@@ -1,11 +1,12 @@
 """Which pixels look like the wearer's bare skin."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 
-@njit(cache=True, nogil=True)
+
+@kernel
 def bare_pixels(
     picture: NDArray[np.uint8],
     x0: int,

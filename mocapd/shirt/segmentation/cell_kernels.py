@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.vision.raster_kernels import triangle_middle
 
 CELL = 4  # px: all pixels of a cell share the distances to the predicted colours
@@ -40,13 +40,13 @@ class ClassifierWeights(NamedTuple):
     soft_unknown: float
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def bin_of(bgr: NDArray[np.uint8]) -> int:
     """The bin of a colour: 5 bits a channel."""
     return (int(bgr[0]) >> 3) << 10 | (int(bgr[1]) >> 3) << 5 | int(bgr[2]) >> 3
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def colour_distances(
     ids: NDArray[np.uint8],
     xy: NDArray[np.float64],
@@ -125,7 +125,7 @@ def colour_distances(
                     out[y, x, k] = min(CELL * v // (3 * divisor[k]), FAR - 1)
 
 
-@njit(cache=True, nogil=True, fastmath=True)
+@kernel(fastmath=True)
 def classify(
     picture: NDArray[np.uint8],
     x0: int,

@@ -5,14 +5,15 @@ instead of a hundred chrominances, the same measure ignores furniture that is co
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 CELL = 4  # work px
 CAP = 0.05  # share of a window at which a colour counts in full
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def suppress_background(
     picture: NDArray[np.uint8],
     mean: NDArray[np.float32],
@@ -32,7 +33,7 @@ def suppress_background(
                 ids[y, x] = 0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def find_shirt(
     ids: NDArray[np.uint8], sizes: NDArray[np.int64]
 ) -> tuple[int, int, int, int, float]:

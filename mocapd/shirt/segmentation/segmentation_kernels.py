@@ -1,15 +1,15 @@
 """What the classified picture says of the colours: statistics, counts, agreement with the pose."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.shirt.segmentation.cell_kernels import bin_of
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def count_colours(
     picture: NDArray[np.uint8],
     x0: int,
@@ -33,7 +33,7 @@ def count_colours(
                 other_count[bin_of(picture[y0 + y, x0 + x])] += 1.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def colour_statistics(
     picture: NDArray[np.uint8],
     x0: int,
@@ -73,7 +73,7 @@ def colour_statistics(
             s[3] += r
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def agreement(model_ids: NDArray[np.uint8], image_ids: NDArray[np.uint8]) -> tuple[int, int]:
     """How many rendered pixels there are, and at how many the picture was given the same colour."""
     h, w = model_ids.shape

@@ -2,8 +2,7 @@
 
 from typing import NamedTuple
 
-from numba import njit
-
+from mocapd.kernels.decorator import kernel
 from mocapd.types import Bytes, Floats
 
 MARGIN = 1.0 / 3.0  # of blank paper round the print, in squares
@@ -18,7 +17,7 @@ class PixelRays(NamedTuple):
     across: Floats
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def shade_sheet(
     pixels: PixelRays, board_from_ray: Floats, square_m: float,
     print_: Bytes, cells: int, subsamples: int, ink: float, paper: float, blank: float, front: bool,

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.sim.person.face_kernels import add_face
 from mocapd.types import Bytes, Floats
 
@@ -43,13 +43,13 @@ def jacket_share(x_m: Floats, reach_m: float, level: float) -> Floats:
     return share
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def covered(x: Floats | float, reach_m: float, level: float) -> Floats | float:
     """How far [m] a place x to the left of the middle lies inside of the edge of a jacket at this level 0..1."""
     return level * (2.0 * reach_m + 2.0 * _RIM_M) - _RIM_M - (x + reach_m)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _woven(
     of: Floats, n: int, cloth: int | np.int64, along: float, across: float, rgb: Floats
 ) -> None:
@@ -65,7 +65,7 @@ def _woven(
         rgb[c] = (1.0 - share) * of[n, cloth + c] + share * of[n, cloth + _SECOND + c]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _printed(of: Floats, n: int, x: float, y: float, z: float) -> bool:
     """A ring and a bar on the chest, two bars on the back."""
     size = of[n, SIZE]
@@ -78,7 +78,7 @@ def _printed(of: Floats, n: int, x: float, y: float, z: float) -> bool:
     return bool(inside)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _head(of: Floats, n: int, x: float, y: float, z: float, rgb: Floats) -> None:
     size = of[n, SIZE]
     u, v, w = x / size, (y - of[n, NECK_Y]) / size, (z - of[n, NECK_Z]) / size
@@ -102,7 +102,7 @@ def _head(of: Floats, n: int, x: float, y: float, z: float, rgb: Floats) -> None
             rgb[c] *= 0.78
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def surface_colour(
     x: float,
     y: float,

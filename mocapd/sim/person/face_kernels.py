@@ -5,17 +5,17 @@ half-way between chin and crown, the nose's tip half-way from there to the chin.
 """
 
 import numpy as np
-from numba import njit
 
+from mocapd.kernels.decorator import kernel
 from mocapd.types import Floats
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _bump(x: float, y: float, wide: float, high: float) -> float:
     return float(np.exp(-((x / wide) ** 2) - (y / high) ** 2))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def add_face(u: float, v: float, hair: Floats, rgb: Floats) -> None:
     """Turns skin rgb (3,), in place, into the face's colour at (u, v); hair (3,): of the brows."""
     a = abs(u)
@@ -50,7 +50,7 @@ def add_face(u: float, v: float, hair: Floats, rgb: Floats) -> None:
             rgb[c] *= 0.30
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def portrait(u: float, v: float, rgb: Floats) -> None:
     """A picture of a head before the paper rgb (3,), in place; u, v in 0..1 over the sheet."""
     hair = np.array([0.05, 0.03, 0.02])

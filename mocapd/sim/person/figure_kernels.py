@@ -1,13 +1,13 @@
 """Geometry of the person per frame: skinning, normals, and the light that reaches each vertex."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.types import Floats, Ints, Singles
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def skin_vertices(
     vertices: Floats, normals: Floats, folds: Floats, fold_joint: Ints, bend: Floats,
     bones: NDArray[np.int32], weights: Floats, R: Floats, t: Floats, out: Floats,
@@ -28,7 +28,7 @@ def skin_vertices(
         out[v, 0], out[v, 1], out[v, 2] = ox, oy, oz
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def vertex_normals(vertices: Floats, triangles: NDArray[np.int32], out: Floats) -> None:
     """Unit normals (V,3): the faces' normals around each vertex, weighted by their areas."""
     out[:] = 0.0
@@ -51,7 +51,7 @@ def vertex_normals(vertices: Floats, triangles: NDArray[np.int32], out: Floats) 
             out[v, c] /= max(size, 1e-12)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def shadow_at(
     views: Floats, depths: Singles, k: int, x: float, y: float, z: float, bias: float
 ) -> float:
@@ -80,7 +80,7 @@ def shadow_at(
     return float((1 - fv) * top + fv * low)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def light_vertices(
     vertices: Floats, normals: Floats, light_at: Floats, light_rgb: Floats, light_sun: Ints,
     ambient_up: Floats, ambient_down: Floats, views: Floats, depths: Singles, out: Singles,

@@ -1,13 +1,13 @@
 """Procedural surfaces of the room: albedo as a function of the place on it."""
 
 import numpy as np
-from numba import njit
 
+from mocapd.kernels.decorator import kernel
 from mocapd.sim.person.face_kernels import portrait
 from mocapd.types import Floats
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def hash01(x: int, y: int | np.int64, seed: int) -> float:
     """A number 0..1 that depends on three integers alone (two rounds of the Murmur3 finaliser)."""
     h = np.uint32(x) * np.uint32(0x9E3779B1) ^ np.uint32(y) * np.uint32(0x85EBCA77)
@@ -20,7 +20,7 @@ def hash01(x: int, y: int | np.int64, seed: int) -> float:
     return np.float64(np.uint32(h ^ (h >> np.uint32(16)))) / 4294967296.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def value_noise(u: float, v: float, seed: int) -> float:
     """Smooth noise 0..1 with features of size 1."""
     iu, iv = int(np.floor(u)), int(np.floor(v))
@@ -31,7 +31,7 @@ def value_noise(u: float, v: float, seed: int) -> float:
     return a * (1 - fv) + b * fv
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _poster(u: float, v: float, seed: int, rgb: Floats) -> None:
     """Discs and a stripe of strong colours on paper; u, v in 0..1 over the sheet."""
     for k in range(7):
@@ -48,7 +48,7 @@ def _poster(u: float, v: float, seed: int, rgb: Floats) -> None:
             rgb[c] = 0.75
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def pattern_albedo(
     pattern: int, u_m: float, v_m: float, u: float, v: float, seed: int, rgb: Floats
 ) -> None:

@@ -1,8 +1,8 @@
 """Ray casting of the room: what each pixel sees, and the light each lamp brings there."""
 
 import numpy as np
-from numba import njit
 
+from mocapd.kernels.decorator import kernel
 from mocapd.sim.scenery.furniture import Primitives
 from mocapd.sim.scenery.lamps import Lamps
 from mocapd.sim.scenery.pattern_kernels import hash01, pattern_albedo
@@ -11,7 +11,7 @@ from mocapd.types import Floats, Ints, Singles
 _FAR = 1e30
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _slab(o: float, d: float) -> tuple[float, float]:
     """Where the ray is between -1 and 1 in one coordinate."""
     if abs(d) < 1e-12:
@@ -20,7 +20,7 @@ def _slab(o: float, d: float) -> tuple[float, float]:
     return (t0, t1) if t0 < t1 else (t1, t0)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _enter(
     shapes: Floats, p: int, x: float, y: float, z: float, u: float, v: float, w: float
 ) -> float:
@@ -47,7 +47,7 @@ def _enter(
     return low if low < high and low > 1e-4 else _FAR
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _passes(
     ball: Floats, g: int, x: float, y: float, z: float, u: float, v: float, w: float
 ) -> bool:
@@ -59,7 +59,7 @@ def _passes(
     return square < r2 or (along > 0.0 and square - along * along < r2)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _blocked(
     shapes: Floats, first: Ints, ball: Floats, casts: Ints, x: float, y: float, z: float,
     u: float, v: float, w: float, reach: float,
@@ -72,7 +72,7 @@ def _blocked(
     return False
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _face(shapes: Floats, p: int | np.int64, hit: Floats, normal: Floats, uv: Floats) -> None:
     """Normal (3,) in the world and place on the face, uv = u_m, v_m [m], u, v in 0..1."""
     px, py, pz = hit[0] - shapes[p, 0], hit[1] - shapes[p, 1], hit[2] - shapes[p, 2]
@@ -97,7 +97,7 @@ def _face(shapes: Floats, p: int | np.int64, hit: Floats, normal: Floats, uv: Fl
     normal[0], normal[1], normal[2] = (c * nx + s * nz) / size, ny / size, (-s * nx + c * nz) / size
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def cast_room(
     origin: Floats, directions: Singles, room: Primitives, lamps: Lamps, sky: Floats, sample: int,
     layers: Singles, points: Singles,
@@ -156,7 +156,7 @@ def cast_room(
                     layers[1 + k, y, x, c] += rgb[c] * light_rgb[k, c] * strength
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _facing(
     k: int, x: int, y: int, sample: int, hit: Floats, normal: Floats, room: Primitives, lamps: Lamps,
 ) -> float:  # fmt: skip

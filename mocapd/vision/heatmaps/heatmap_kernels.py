@@ -3,15 +3,15 @@
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.types import Bytes, Floats, Singles
 
 _STRONG = 4.0 / 255.0  # a difference of a quarter of the range is a sure one
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def fill_input(picture: Bytes, background: Singles, known: Bytes, out: Singles) -> None:
     """out (4,h,w): a picture (h,w,3) about its middle grey, and how far it is off a background (h,w,3), 0..1; 0 where that is
     not known (h,w)."""
@@ -26,7 +26,7 @@ def fill_input(picture: Bytes, background: Singles, known: Bytes, out: Singles) 
             out[3, y, x] = min(most * np.float32(_STRONG), np.float32(1.0)) if known[y, x] else 0.0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def read_maps(maps: NDArray[np.float32], joints: int, out: Floats) -> None:
     """out (J,7) of maps (3 J,h,w), whose first J are log odds of places: mean x, y [cells] and variances xx, xy, yy of the
     distribution that their softmax is, and what the others say there: depth, and the scale of its error."""

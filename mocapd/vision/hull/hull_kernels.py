@@ -1,8 +1,9 @@
 """Rays clipped against silhouettes along epipolar lines, and log-odds summed over cameras at points."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -11,7 +12,7 @@ _NEAREST_M = 0.05  # along a camera's axis: nearer points, and those behind it, 
 _MOST_STEPS = 4096  # along one epipolar line
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _pixel(
     x: float, y: float, focal: Array, dist: Array, width: int, height: int
 ) -> tuple[int, int]:
@@ -25,7 +26,7 @@ def _pixel(
     return int(np.floor(u + 0.5)), int(np.floor(v + 0.5))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _walk(
     origin: Array,
     way: Array,
@@ -78,7 +79,7 @@ def _walk(
     return n_found
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def clip_rays(
     eye_m: Array,
     ways: Array,
@@ -134,7 +135,7 @@ def clip_rays(
             intervals_m[n, k, 0], intervals_m[n, k, 1] = now[k, 0], now[k, 1]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def sum_at_points(
     points_m: Array,
     maps: NDArray[np.float32],

@@ -6,9 +6,9 @@ second and the fourth to the third. What a round end adds is left out.
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.published.hecht2009.cylinders.work_camera import WorkCamera
 
 Array = NDArray[np.float64]
@@ -19,7 +19,7 @@ _ALONG_RAY = (
 )
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def to_camera_frame(camera: WorkCamera, point: Array, out: Array) -> None:
     """A world point (3,) in the camera's frame, out (3,) [m]."""
     R, t, _, _, _ = camera
@@ -27,7 +27,7 @@ def to_camera_frame(camera: WorkCamera, point: Array, out: Array) -> None:
         out[i] = R[i, 0] * point[0] + R[i, 1] * point[1] + R[i, 2] * point[2] + t[i]
 
 
-@njit(cache=True, nogil=True, inline="always", error_model="numpy")
+@kernel(inline="always", error_model="numpy")
 def pixel_at(
     K: Array, dist: Array, far_r2: float, X: float, Y: float, Z: float
 ) -> tuple[float, float]:
@@ -44,7 +44,7 @@ def pixel_at(
     return K[0] * u + K[2], K[1] * v + K[3]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def project_frustum(
     camera: WorkCamera, a: Array, b: Array, radius_a: float, radius_b: float, quad: Array
 ) -> bool:
@@ -74,7 +74,7 @@ def project_frustum(
     return True
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def project_limbs(
     points: Array, radii: Array, camera: WorkCamera, quads: Array, depths: Array
 ) -> None:
@@ -92,7 +92,7 @@ def project_limbs(
                 quads[n, f] = np.nan
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def project_parts(
     ends: Array, radii: Array, camera: WorkCamera, quads: Array, depths: Array
 ) -> None:

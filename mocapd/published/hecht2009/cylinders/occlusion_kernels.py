@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
@@ -25,7 +26,7 @@ class OcclusionModel(NamedTuple):
     cell_px: float
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def index_parts(quads: Array, depths: Array, model: OcclusionModel) -> None:
     """Fill a model of as many parts from quads (C,4,2) [work px] and depths (C,2) of both ends [m]. NaN quads hide
     nothing."""
@@ -65,7 +66,7 @@ def index_parts(quads: Array, depths: Array, model: OcclusionModel) -> None:
                 cells[y, x] |= np.int64(1) << c
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def is_hidden(
     model: OcclusionModel, others: int, x: float, y: float, depth: float, margin: float
 ) -> bool:
@@ -93,7 +94,7 @@ def is_hidden(
     return False
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def hidden_samples(
     model: OcclusionModel, others: int, samples: Array, margin: float, out: NDArray[np.bool_]
 ) -> None:

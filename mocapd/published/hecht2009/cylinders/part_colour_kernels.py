@@ -1,9 +1,9 @@
 """Colours of rings along the body's parts, where they are seen."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.published.hecht2009.cylinders.occlusion_kernels import OcclusionModel, is_hidden
 
 Array = NDArray[np.float64]
@@ -11,7 +11,7 @@ Bytes = NDArray[np.uint8]
 Singles = NDArray[np.float32]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def observe_colours(
     quads: Array,
     depths: Array,

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.published.hecht2009.cylinders.cylinder_projection_kernels import (
     NEAREST_M,
     pixel_at,
@@ -25,7 +25,7 @@ class NoiseDraws(NamedTuple):
     depth: Array
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def motion_at(
     points: Array,
     camera: WorkCamera,
@@ -50,7 +50,7 @@ def motion_at(
                 out[n, i] = max(out[n, i], motion[int(v), int(u)] * (1.0 / 255.0))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def scatter(
     points: Array,
     variance: Array,
@@ -83,7 +83,7 @@ def scatter(
                     points[n, i, a] += sd * spread[n, i, a]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def resample(weights: Array, start: float, out: NDArray[np.int64]) -> None:
     """Systematic resampling: out (M,) indices into weights (N,), which sum to 1; start in 0..1, the only random number.
 

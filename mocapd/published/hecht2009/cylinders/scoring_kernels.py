@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.published.hecht2009.cylinders.cylinder_projection_kernels import (
     project_frustum,
     to_camera_frame,
@@ -32,7 +32,7 @@ class Sampling(NamedTuple):
     folds: bool
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def covers(q: Array, turn: float, x: float, y: float) -> bool:
     """Whether the point is in a convex quadrilateral (4,2); turn: 1 or -1, the sign of its area."""
     for k in range(4):
@@ -43,7 +43,7 @@ def covers(q: Array, turn: float, x: float, y: float) -> bool:
     return True
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def across_view(a: Array, b: Array) -> float:
     """Sine of the angle between the axis a b, points of the camera's frame (3,), and the ray to its middle."""
     mm = dd = md = 0.0
@@ -58,7 +58,7 @@ def across_view(a: Array, b: Array) -> float:
     return sine
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def score_in_view(
     points: Array,
     radii: Array,

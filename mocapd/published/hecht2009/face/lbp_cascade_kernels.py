@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 WINDOW_PX = 24  # side of the window that the cascade was trained on
 
@@ -24,7 +25,7 @@ class CascadeArrays(NamedTuple):
     leaves: NDArray[np.float32]
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def lbp_code(integral: NDArray[np.int32], y: int, x: int, h: int, w: int) -> int:
     """The eight blocks around the middle one of 3x3 blocks (h,w), from the top left clockwise, as bits: not darker."""
     # the sixteen corners that the nine blocks share
@@ -55,7 +56,7 @@ def lbp_code(integral: NDArray[np.int32], y: int, x: int, h: int, w: int) -> int
     return code
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def stages_passed(cascade: CascadeArrays, integral: NDArray[np.int32], y: int, x: int) -> int:
     """Of the window whose corner is at y, x; as many as there are for a face."""
     n = len(cascade.threshold)
@@ -78,7 +79,7 @@ def stages_passed(cascade: CascadeArrays, integral: NDArray[np.int32], y: int, x
     return n
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def scan(
     cascade: CascadeArrays,
     integral: NDArray[np.int32],

@@ -1,8 +1,9 @@
 """Colours of a head and of what is around it: counted, and turned into log odds."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 SIDE = 16  # bins of blue, green and red
 CHROMA = 32  # bins of the shares of red and of green
@@ -11,7 +12,7 @@ _DARK = 40  # sum of the channels below which their shares mean nothing
 Singles = NDArray[np.float32]
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def colour_bin(b: int, g: int, r: int, gain: float) -> int:
     """Of a colour whose brightness is scaled by gain."""
     i = min(int(b * gain) >> 4, SIDE - 1)
@@ -20,7 +21,7 @@ def colour_bin(b: int, g: int, r: int, gain: float) -> int:
     return (i * SIDE + j) * SIDE + k
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def chroma_bin(b: int, g: int, r: int) -> int:
     """Of the shares of red and of green; -1 where it is too dark to tell."""
     total = int(b) + int(g) + int(r)
@@ -31,7 +32,7 @@ def chroma_bin(b: int, g: int, r: int) -> int:
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def count_head(
     picture: NDArray[np.uint8],
     ellipse: NDArray[np.float64],
@@ -77,7 +78,7 @@ def count_head(
                     other[c] += np.float32(1.0)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def blur3(counts: Singles, out: Singles) -> None:
     """Counts (SIDE^3,) spread over neighbouring bins, 1 2 1 along each axis, into out."""
     n = SIDE
@@ -91,10 +92,11 @@ def blur3(counts: Singles, out: Singles) -> None:
             low = a[i - stride] if at > 0 else a[i]
             high = a[i + stride] if at < n - 1 else a[i]
             out[i] = np.float32(0.25) * (low + high) + np.float32(0.5) * a[i]
-        a[:] = out
+        for i in range(n * n * n):
+            a[i] = out[i]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def log_odds(mine: Singles, others: Singles, floor: float, out: Singles) -> None:
     """Fill out (B,) with the log odds of each bin, from counts (B,), squeezed into -1..1.
 
@@ -108,7 +110,7 @@ def log_odds(mine: Singles, others: Singles, floor: float, out: Singles) -> None
         out[i] = np.float32(np.tanh(0.5 * np.log(a / b)))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def brightness(picture: NDArray[np.uint8], x0: int, y0: int, x1: int, y1: int) -> float:
     """The mean of all channels, from every fourth pixel each way of the region, which lies in the picture."""
     total = n = 0
@@ -119,7 +121,7 @@ def brightness(picture: NDArray[np.uint8], x0: int, y0: int, x1: int, y1: int) -
     return total / max(n, 1)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def skin_map(picture: NDArray[np.uint8], odds: Singles, out: NDArray[np.uint8]) -> None:
     """Fill out (H,W) with 255 where the colour of picture (H,W,3) BGR is rather skin than not; odds (CHROMA^2,)."""
     h, w, _ = picture.shape
@@ -129,7 +131,7 @@ def skin_map(picture: NDArray[np.uint8], odds: Singles, out: NDArray[np.uint8]) 
             out[y, x] = 255 if c >= 0 and odds[c] > 0.0 else 0
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def skin_side(
     picture: NDArray[np.uint8], ellipse: NDArray[np.float64], up: NDArray[np.float64], odds: Singles
 ) -> tuple[float, float]:

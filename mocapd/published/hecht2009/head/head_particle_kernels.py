@@ -1,17 +1,17 @@
 """How well each of many places of a head explains one picture."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays
+from mocapd.kernels.decorator import kernel
 from mocapd.published.hecht2009.head.head_colour_kernels import colour_bin
 from mocapd.published.hecht2009.head.projection_kernels import BEHIND, pixel_of
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def score_heads(
     middles: Array,
     size: Array,
@@ -72,7 +72,7 @@ def score_heads(
         out[p] = mine / len(inside) - beside / len(outline) + edge_weight * edge / len(outline)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def score_observations(
     middles: Array, means: Array, information: Array, outlier: float, out: Array
 ) -> None:

@@ -1,13 +1,12 @@
 """One point through a camera with its lens, for the kernels beside."""
 
-from numba import njit
-
 from mocapd.body.arrays import CameraArrays
+from mocapd.kernels.decorator import kernel
 
 BEHIND = 1e-3  # depth [m] of what is not before the camera
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def pixel_of(camera: CameraArrays, X: float, Y: float, Z: float) -> tuple[float, float, float]:
     """x, y [px] and depth [m] of a world point [m]; a depth up to BEHIND: it has no pixel."""
     R, t, K, dist = camera

@@ -1,11 +1,12 @@
 """Grey values between pixels."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 
-@njit(cache=True, nogil=True, inline="always")
+
+@kernel(inline="always")
 def grey_at(grey: NDArray[np.uint8], x: float, y: float) -> float:
     """Bilinear; negative outside the picture (h,w)."""
     h, w = grey.shape

@@ -1,17 +1,17 @@
 """A patch of one picture looked for in another, for each distance that it may have."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import CameraArrays
+from mocapd.kernels.decorator import kernel
 from mocapd.published.hecht2009.head.projection_kernels import BEHIND, pixel_of
 from mocapd.published.hecht2009.head.sampling_kernels import grey_at
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def sweep(
     centre: Array,
     rays: Array,

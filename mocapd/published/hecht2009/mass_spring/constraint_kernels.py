@@ -5,10 +5,10 @@ of position-based dynamics (Jakobsen 2001; Müller et al. 2007), springs with co
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from mocapd.fit.terms.collision_kernels import ALONG
+from mocapd.kernels.decorator import kernel
 from mocapd.published.hecht2009.mass_spring.angular_limits import Hinges, Swings
 
 Array = NDArray[np.float64]
@@ -25,7 +25,7 @@ _BELOW_SHOULDERS = (
 )
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def sweep_springs(
     points: Array,
     inverse_mass: Array,
@@ -63,7 +63,7 @@ def sweep_springs(
         points[b, 2] += fb * dz
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def span_frame(points: Array, line: tuple[int, int], base: tuple[int, int], out: Array) -> None:
     """Axes of a part of the trunk, the columns of out (3,3): x along `line` to the left, y up from the middle of `base`
     as far as it is perpendicular to x, z forwards."""
@@ -83,7 +83,7 @@ def span_frame(points: Array, line: tuple[int, int], base: tuple[int, int], out:
     out[0, 2], out[1, 2], out[2, 2] = z0, z1, z2
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def span_frames(points: Array, out: Array) -> None:
     """Both frames of the trunk, out (2,3,3): UPPER, LOWER."""
     span_frame(points, _SHOULDERS, _WAIST, out[0])
@@ -94,7 +94,7 @@ def span_frames(points: Array, out: Array) -> None:
         out[1, i, 2] = -out[1, i, 2]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def sweep_swings(
     points: Array, inverse_mass: Array, swings: Swings, rows: Ints, frames: Array
 ) -> None:
@@ -140,7 +140,7 @@ def sweep_swings(
                 points[c2, r] += inverse_mass[c2] * step
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def sweep_hinges(
     points: Array, inverse_mass: Array, hinges: Hinges, rows: Ints, frames: Array
 ) -> None:
@@ -233,7 +233,7 @@ def sweep_hinges(
         points[c, 2] += wc * s2
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def push_arms_out(
     points: Array, inverse_mass: Array, arms: Ints, rows: Ints, trunk: Array, frames: Array
 ) -> None:
@@ -306,7 +306,7 @@ def push_arms_out(
                 points[wrist, r] += sw * step
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def part_pairs(
     points: Array, inverse_mass: Array, pairs: Ints, gaps: Array, rows: Ints, frames: Array
 ) -> None:

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.published.hecht2009.mass_spring.angular_limits import Hinges, Swings
 from mocapd.published.hecht2009.mass_spring.constraint_kernels import (
     part_pairs,
@@ -55,7 +55,7 @@ class Active(NamedTuple):
     points: Ints
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@kernel(error_model="numpy")
 def project(
     particles: Array,
     moved: Ints,
@@ -112,7 +112,7 @@ def project(
                 particles[p, i, r] = body[moved[i], r]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def advance(
     points: Array,
     velocities: Array,

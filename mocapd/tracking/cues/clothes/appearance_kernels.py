@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 from mocapd.vision.foreground_kernels import SHADOW
 
 Singles = NDArray[np.float32]
@@ -38,7 +38,7 @@ class RegionCosts(NamedTuple):
     person_most: float
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def colour_bin(picture: NDArray[np.uint8], y: int, x: int) -> int:
     """The histogram's bin of a pixel."""
     shift = 8 - BITS
@@ -46,7 +46,7 @@ def colour_bin(picture: NDArray[np.uint8], y: int, x: int) -> int:
     return (int(b) << 2 * BITS) | (int(g) << BITS) | int(r)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def count_colours(
     picture: NDArray[np.uint8],
     classes: NDArray[np.uint8],
@@ -64,7 +64,7 @@ def count_colours(
                 counts[k, colour_bin(picture, y, x)] += np.float32(rate)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def log_table(counts: Singles, least: float, scratch: Singles, out: Singles) -> None:
     """out (8,4096): minus the logarithm of each class's share of its own pixels, smoothed over neighbouring bins (1 2 1)
     in all three channels. scratch (4096,); least: the share of a colour that was never seen."""
@@ -100,7 +100,7 @@ def log_table(counts: Singles, least: float, scratch: Singles, out: Singles) -> 
             table[i] = never if table[i] == 0.0 else -np.log(share)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def classify_regions(
     picture: NDArray[np.uint8],
     before: NDArray[np.uint8],

@@ -1,11 +1,12 @@
 """Kernel: pixels that show the floor about a person."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from mocapd.kernels.decorator import kernel
 
-@njit(cache=True, nogil=True)
+
+@kernel
 def near_on_floor(
     met_x: NDArray[np.float32],
     met_z: NDArray[np.float32],

@@ -5,8 +5,9 @@ side by side, so that all take less than half of the time of a distance transfor
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from mocapd.kernels.decorator import kernel
 
 Singles = NDArray[np.float32]
 LANES = 8  # places of a pixel, of which the regions 1.. take the first ones
@@ -14,7 +15,7 @@ _BESIDE_PX, _ACROSS_PX = 0.955, 1.3693
 _FAR_PX = 1e3
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def chamfer_distances(drawn: NDArray[np.uint8], grid_px: float, out: Singles) -> None:
     """out (h+2,w+2,8): from each pixel of a grid of grid_px to where each of the regions is drawn (h,w) on it [px]; large
     where one is not, and in the border."""
@@ -39,7 +40,7 @@ def chamfer_distances(drawn: NDArray[np.uint8], grid_px: float, out: Singles) ->
             row[i] = min(row[i], row[i + LANES] + beside)
 
 
-@njit(cache=True, nogil=True, inline="always")
+@kernel(inline="always")
 def _from_next_row(other: Singles, row: Singles, beside: np.float32, across: np.float32) -> None:
     """Lessen a row (8 w,) by what is nearer by way of the row above or below. In slices, as with offsets in the index the
     compiler finds no vector instructions."""
