@@ -36,9 +36,15 @@ dev: PROJECT := .[all,dev]
 clients: LOCKS := --requirement locks/clients.txt
 clients: PROJECT := .[all,dev,clients]
 # uv, itself from the lock, takes a fifth of pip's time; where it gets nowhere (an index of one's own), pip goes on.
-QUICKLY = sed -n '/^uv==/,/^[a-z]/{/^uv==\|^ /p}' locks/dev.txt > $(VENV)/uv.txt && \
-	$(PIP_INSTALL) $(BY_HASH) --requirement $(VENV)/uv.txt && \
-	$(BIN)/python -m uv --no-config --no-cache pip install --quiet --python $(BIN)/python $(BY_HASH)
+# $(PYTHON)'s pip gets it, if there is one: installing pip takes longer than all the rest. Developers need pip, too.
+WITH_PIP = { $(BIN)/python -c 'import pip' 2>/dev/null || $(BIN)/python -m ensurepip >/dev/null || { \
+	echo "make: $(PYTHON) has no pip -- apt install python3-venv" >&2; false; }; }
+GET_UV = sed -n '/^uv==/,/^[a-z]/{/^uv==\|^ /p}' locks/dev.txt > $(VENV)/uv.txt && { \
+	"$(PYTHON)" -m pip --python $(BIN)/python install --quiet --disable-pip-version-check $(BY_HASH) --requirement $(VENV)/uv.txt || \
+	{ $(WITH_PIP) && $(PIP_INSTALL) $(BY_HASH) --requirement $(VENV)/uv.txt; }; }
+UV_INSTALL = $(BIN)/python -m uv --no-config --no-cache pip install --quiet --python $(BIN)/python
+CHECKOUT := --no-deps --no-build-isolation --editable .
+dev clients: NEEDS = $(WITH_PIP)
 dev: ## the same with the developers' tools
 clients: ## make or renew the environment of the clients' tests in .venv-clients
 env dev clients:
@@ -50,17 +56,17 @@ env dev clients:
 	echo "make: preparing $(VENV) with $(PYTHON) (once, about a quarter of a minute)" >&2; \
 	rm -f $(READY) $(READY)-dev; \
 	case "$$(cat $(VENV)/made-in 2>/dev/null)" in "$$(pwd)") ;; *) rm -rf $(VENV);; esac; \
-	$(BIN)/python -c '' 2>/dev/null || { rm -rf $(VENV); "$(PYTHON)" -m venv $(VENV); } || { \
+	$(BIN)/python -c '' 2>/dev/null || { rm -rf $(VENV); "$(PYTHON)" -m venv --without-pip $(VENV); } || { \
 		echo "make: $(PYTHON) cannot make an environment -- apt install python3-venv" >&2; exit 1; }; \
 	pwd > $(VENV)/made-in && \
 	if $(BIN)/python -c '$(LOCKED)'; then \
-		{ $(QUICKLY) $(LOCKS) 2>/dev/null || $(PIP_INSTALL) $(BY_HASH) $(LOCKS); } && \
-		$(PIP_INSTALL) --no-deps --no-build-isolation --editable .; \
+		{ $(GET_UV) && $(UV_INSTALL) $(BY_HASH) $(LOCKS) && $(UV_INSTALL) --reinstall $(CHECKOUT); } 2>/dev/null || \
+		{ $(WITH_PIP) && $(PIP_INSTALL) $(BY_HASH) $(LOCKS) && $(PIP_INSTALL) $(CHECKOUT); }; \
 	else \
 		echo "make: $$($(BIN)/python -V) on $$(uname -sm) is none that locks/ is for (3.11 to 3.14 on Linux," \
 			"x86_64 or aarch64): pip chooses the versions" >&2; \
-		$(PIP_INSTALL) --editable '$(PROJECT)'; \
-	fi && \
+		$(WITH_PIP) && $(PIP_INSTALL) --editable '$(PROJECT)'; \
+	fi && $(or $(NEEDS),true) && \
 	for stamp in $(STAMPS); do echo "$$want" > $$stamp || exit 1; done
 
 demo: env ## two simulated webcams in, skeleton frames out on 127.0.0.1, one live line
@@ -114,6 +120,7 @@ dist: env ## build wheel and source distribution, and what is handed on of the c
 	$(BIN)/python clients/pack.py dist
 
 deb: dist ## make a Debian package of it, with all that it runs on, for this machine's python3
+	@$(WITH_PIP)
 	deb/build.sh $(BIN)/python dist/mocapd-*.whl dist
 
 vm-test: deb ## as root: install the package on a real kernel with two USB webcams, pull, freeze, kill, remove (needs ../shared/vm)

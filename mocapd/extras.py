@@ -37,7 +37,7 @@ def reinstall_command() -> str:
         return f"pipx install --force {wheel}"
     python = shlex.quote(sys.executable)
     if find_spec("pip") is None:
-        return f"uv pip install --python {python} --reinstall {wheel}"
+        return f"{_uv()} pip install --python {python} --reinstall {wheel}"
     return f"{python} -m pip install --force-reinstall {wheel}"
 
 
@@ -51,5 +51,10 @@ def install_command(extra: str) -> str:
     if (prefix / "pipx_metadata.json").is_file():
         return f"pipx inject {shlex.quote(prefix.name)} {library}"
     if find_spec("pip") is None:
-        return f"uv pip install --python {python} {library}"
+        return f"{_uv()} pip install --python {python} {library}"
     return f"{python} -m pip install {library}"
+
+
+def _uv() -> str:
+    """The command uv: of this environment, which `make env` makes with it, or the user's own."""
+    return f"{shlex.quote(sys.executable)} -m uv" if find_spec("uv") is not None else "uv"

@@ -98,5 +98,7 @@ def test_the_library_is_added_by_what_made_the_environment(
     assert install_command("print") == f"{python} -m pip install reportlab"
     monkeypatch.setattr(extras, "find_spec", lambda _name: None)
     assert install_command("print") == f"uv pip install --python {python} reportlab"
+    monkeypatch.setattr(extras, "find_spec", lambda name: name == "uv" or None)
+    assert install_command("print") == f"{python} -m uv pip install --python {python} reportlab"
     (prefix / "pipx_metadata.json").touch()
     assert install_command("print") == "pipx inject mocapd reportlab"

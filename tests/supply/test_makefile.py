@@ -15,9 +15,11 @@ from tests.supply.lock_files import ROOT
 # `-c` truly, except for its version, and writes down what pip is told.
 _PYTHON = """#!/bin/sh
 case "$1 $2" in
-"-m venv") mkdir -p "$3/bin" && cp "$0" "$3/bin/python" ;;
-"-m pip") shift 2; echo "$*" >> pip-calls ;;
+"-m venv") mkdir -p "$4/bin" && cp "$0" "$4/bin/python" ;;
+"-m pip") shift 2; echo "$*" >> pip-calls; [ "$1" != --python ] || [ -e has-pip ] ;;
+"-m ensurepip") echo ensurepip >> pip-calls ;;
 "-m uv") shift 2; echo "uv $*" >> pip-calls; [ -e uv-works ] ;;
+"-c import pip") exit 1 ;;
 "-c "*) exec "{python}" -c "import sys; sys.version_info = {version}; exec(sys.argv[1])" "$2" ;;
 -V*) echo "Python {version}" ;;
 esac
@@ -34,6 +36,7 @@ class Checkout:
             shutil.copy(ROOT / name, folder / name)
         self.python = folder / "a-python"
         (folder / "uv-works").touch()
+        (folder / "has-pip").touch()
         self.set_version((3, 11, 9))
 
     def set_version(self, version: tuple[int, int, int]) -> None:
@@ -67,6 +70,7 @@ def test_env_installs_the_runtime_lock_by_hash_and_the_checkout_without_download
     checkout: Checkout,
 ) -> None:
     (uv, packages, project), _ = checkout.make("env")
+    assert uv.startswith("--python ")
     assert "--require-hashes" in uv
     assert packages.startswith("uv ")
     assert "--require-hashes" in packages
@@ -80,7 +84,8 @@ def test_env_installs_the_runtime_lock_by_hash_and_the_checkout_without_download
 def test_dev_installs_the_developers_lock_and_env_has_nothing_left_to_do(
     checkout: Checkout,
 ) -> None:
-    (uv, packages, project), _ = checkout.make("dev")
+    (uv, packages, project, pip), _ = checkout.make("dev")
+    assert pip == "ensurepip"
     assert "--require-hashes" in uv
     assert packages.startswith("uv ")
     assert "--require-hashes" in packages
@@ -93,7 +98,7 @@ def test_dev_installs_the_developers_lock_and_env_has_nothing_left_to_do(
 
 def test_the_tests_of_clients_have_an_environment_of_their_own(checkout: Checkout) -> None:
     checkout.make("dev")
-    (_, packages, project), _ = checkout.make("clients")
+    (_, packages, project, _), _ = checkout.make("clients")
     assert "--require-hashes" in packages
     assert _locks_of(packages) == {"locks/clients.txt"}
     assert "--no-deps" in project
@@ -119,13 +124,25 @@ def test_where_uv_gets_nowhere_pip_installs_the_lock(
     checkout: Checkout, target: str, locks: set[str]
 ) -> None:
     (checkout.folder / "uv-works").unlink()
-    (_, tried, packages, project), _ = checkout.make(target)
+    (_, tried, pip, packages, project, *_), _ = checkout.make(target)
     assert tried.startswith("uv ")
+    assert pip == "ensurepip"
     assert packages.startswith("install ")
     assert "--require-hashes" in packages
     assert "--only-binary :all:" in packages
     assert _locks_of(packages) == locks
     assert "--no-deps" in project
+
+
+def test_where_python_has_no_pip_the_environment_gets_one(checkout: Checkout) -> None:
+    (checkout.folder / "has-pip").unlink()
+    (tried, pip, uv, packages, project), _ = checkout.make("env")
+    assert tried.startswith("--python ")
+    assert pip == "ensurepip"
+    assert uv.startswith("install ")
+    assert "--require-hashes" in uv
+    assert packages.startswith("uv ")
+    assert project.startswith("uv ")
 
 
 def test_of_a_python_that_the_lock_is_for_the_latest_gets_it_too(checkout: Checkout) -> None:
@@ -157,12 +174,12 @@ def test_a_changed_lock_or_project_makes_the_environment_anew(
 def test_a_python_the_lock_is_not_for_gets_what_pip_chooses_and_is_told(checkout: Checkout) -> None:
     checkout.set_version((3, 15, 0))
     calls, said = checkout.make("env")
-    assert [call.split("--")[-1] for call in calls] == ["editable .[print]"]
-    assert "locks/" not in calls[0]
+    assert [call.split("--")[-1] for call in calls] == ["ensurepip", "editable .[print]"]
+    assert "locks/" not in calls[1]
     told = [line for line in said.splitlines() if "pip chooses" in line]
     assert len(told) == 1
     assert "3.11 to 3.14" in told[0]
-    assert [call.split("--")[-1] for call in checkout.make("dev")[0]] == ["editable .[all,dev]"]
+    assert "editable .[all,dev]" in [call.split("--")[-1] for call in checkout.make("dev")[0]]
 
 
 def test_what_ci_runs_installs_packages_by_make_alone() -> None:
