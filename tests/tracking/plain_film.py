@@ -37,9 +37,14 @@ def _sets(pictures: list[dict[str, Bytes]], first: int) -> list[FrameSet]:
 
 
 @kept
-def plain_film(to_m: tuple[float, float] = (0.1, 0.1)) -> PlainFilm:
-    """Two cameras of 320x240 whose views cross, in steady light; the person goes as far as to_m (x, z), the arms raised."""
+def plain_film(to_m: tuple[float, float] = (0.1, 0.1), has_third: bool = False) -> PlainFilm:
+    """Two cameras of 320x240 whose views cross, or three, in steady light; the person goes as far as to_m (x, z), the arms
+    raised."""
     table = small.table()
+    if has_third:
+        table["cameras"].append(
+            table["cameras"][0] | {"name": "back", "position_m": [0.6, 1.5, -2.8]}
+        )
     for camera in table["cameras"]:
         camera |= {"size_px": [320, 240], "dropped": 0.0, "clock_offset_s": 0.0}
     for light in table["lights"]:

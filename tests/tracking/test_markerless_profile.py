@@ -8,6 +8,7 @@ import pytest
 
 from mocapd.body.skeleton import INDEX
 from mocapd.tracking.base import Track
+from mocapd.tracking.cues.clothes import clothes_cue
 from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import FrameSet, Tracking
 from tests.tracking.plain_film import N_EMPTY, PERIOD_NS, PlainFilm, plain_film
@@ -39,12 +40,16 @@ def off_m(track: Track, truth: np.ndarray | None) -> np.ndarray:
     return np.asarray(np.linalg.norm(track.body.joints_m - truth, axis=1))
 
 
+def is_live(track: Track) -> bool:
+    return track.body.tracking is Tracking.LIVE
+
+
 def test_somebody_who_walks_in_is_followed_from_head_to_foot(
     film: PlainFilm, tracker: Stepping
 ) -> None:
     tracks = run(tracker, film.frames)
     assert all(t.body.tracking is Tracking.LOST for t in tracks[:N_EMPTY])
-    live = [i for i, t in enumerate(tracks) if t.body.tracking is Tracking.LIVE]
+    live = [i for i, t in enumerate(tracks) if is_live(t)]
     assert live[0] - N_EMPTY < 15  # half a second
     assert live == list(range(live[0], len(tracks)))
     away = np.array([off_m(tracks[i], film.joints_m[i - N_EMPTY]) for i in live])
@@ -61,7 +66,7 @@ def test_on_a_slow_machine_a_look_goes_on_over_some_frames(film: PlainFilm) -> N
         wearer_shape(film.known),
     )
     tracks = run(slow, film.frames)
-    live = [i for i, t in enumerate(tracks) if t.body.tracking is Tracking.LIVE]
+    live = [i for i, t in enumerate(tracks) if is_live(t)]
     assert live[0] - N_EMPTY < 40  # one fit at each
     assert live == list(range(live[0], len(tracks)))
     away = np.array([off_m(tracks[i], film.joints_m[i - N_EMPTY]) for i in live])
@@ -123,3 +128,20 @@ def test_a_recording_that_never_shows_the_room_empty_tells_it_all_the_same() -> 
     tracker.reset()
     alone = [tracker.step(one, shape) for one in never_empty]
     assert sum(t.body.tracking is Tracking.LIVE for t in alone) < len(live) // 2
+
+
+def test_before_three_cameras_nobody_is_pulled_to_keypoints_and_let_go_at_half_the_frame_rate(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """They are detected in every second frame set, and shared with the next."""
+    film = plain_film(has_third=True)
+
+    def trembling_mm() -> float:
+        tracker = Stepping(markerless_tracker(film.known), wearer_shape(film.known))
+        tracks = run(tracker, film.frames)
+        off = [off_m(t, film.joints_m[i]) for i, t in enumerate(tracks[N_EMPTY:]) if is_live(t)]
+        return float(1e3 * np.abs(np.diff(off, 2, axis=0)).mean())
+
+    shared_mm = trembling_mm()
+    monkeypatch.setattr(clothes_cue, "_SHARED_FROM", 99)
+    assert shared_mm < 0.6 * trembling_mm()

@@ -38,6 +38,15 @@ class JointTermParams:
     heading_information: float = 5000.0  # of toes beside their ankle [disagreeing pixels/m^2]
     heading_sd_m: float = 0.12  # of both, at most: adjacent cameras hardly see depth
 
+    def weighing(self, share: float) -> "JointTermParams":
+        """The same with this share of the weight."""
+        return replace(
+            self,
+            weight=share * self.weight,
+            depth_weight=share * self.depth_weight,
+            heading_information=share * self.heading_information,
+        )
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointRays:

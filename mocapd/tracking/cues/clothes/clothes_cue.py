@@ -23,6 +23,7 @@ from mocapd.tracking.cues.clothes.clothes_solver import (
 )
 from mocapd.tracking.cues.clothes.leg_schedule import LegSchedule, are_new_legs
 from mocapd.tracking.cues.keypoints.delayed_keypoints import DelayedKeypoints
+from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.tracking.lost_reason import LostReason
@@ -32,6 +33,10 @@ from mocapd.tracking.track_state import BodyShapeEstimate, TrackState
 from mocapd.types import Bytes, FrameSet, Rig
 
 _DEPTHS, _JOINTS = 0, 1  # what alternates; also the look is learned in frames that look for joints
+_DETECTED_EVERY = 2  # ticks, without the shirt
+_SHARED_FROM = (
+    3  # cameras: two lose by keypoints in each frame set what silhouettes alone put right
+)
 
 
 class ClothesCue:
@@ -115,7 +120,8 @@ class ClothesCue:
         legs rest, see `legs_rest`.
 
         shirt_carries: the shirt placed trunk and arms a moment ago. Keypoints are then of the frame set before, and detected
-        less often, by half of the cameras at once, or by all for new legs.
+        less often, by half of the cameras at once, or by all for new legs. Else, before three cameras and more, those of a
+        detection are shared among the frame sets until the next.
         """
         self.legs_rest = False
         if not self._knows_look:
@@ -127,18 +133,27 @@ class ClothesCue:
         ):
             self.legs_rest = True
             return None
-        joints = self._solver.terms.joints
+        keypoints, every = self._delayed, _DETECTED_EVERY * self._solver.work.network
+        share = 1.0
         if shirt_carries:
-            detect = self._delayed.take(self.fitter, predicted, t_ns, self.cameras)
+            detect = keypoints.take(self.fitter, predicted, t_ns, self.cameras)
         else:
-            is_due = self._ticks.alternates(2 * self._solver.work.network, _JOINTS)
-            detecting = self.cameras.present if is_due else ()
-            detect = joints.detector(self.fitter, predicted, self.cameras, detecting)
+            is_due = self._ticks.alternates(every, _JOINTS)
+            detect = (
+                keypoints.detector(self.fitter, predicted, t_ns, self.cameras)
+                if is_due
+                else no_detection
+            )
+            if len(self.cameras.present) >= _SHARED_FROM:
+                share = 1.0 / every
+                if not is_due:
+                    detect = keypoints.moved(self.fitter, predicted, t_ns, self.cameras)
         rays: list[JointRays | None]
         views, rays = self.cameras.prepare(
             predicted, self._solver.searches_everywhere(self._ticks), detect
         )
-        return ClothesObservation(predicted, views, joints.term(self.model, rays))
+        terms = self._solver.terms.joints.term(self.model, rays, share)
+        return ClothesObservation(predicted, views, terms)
 
     def detect_keypoints(self, body: MotionState, t_ns: int, legs_since_ns: int | None) -> None:
         """Detects keypoints about a body that the shirt carries in this frame set, at t_ns, for the next fit of its legs."""
@@ -176,7 +191,9 @@ class ClothesCue:
             state, observed, dt_s, self._pictures, self._ticks, self._measures_depths, probe
         )
         if found is not None:
-            self._search.on_body(found.motion.root_m, self._pictures.t_ns)
+            t_ns = self._pictures.t_ns
+            self._search.on_body(found.motion.root_m, t_ns)
+            self._delayed.on_body(self.fitter.joints(found.motion)[0], t_ns)
         return found
 
     def fit_lower_body(

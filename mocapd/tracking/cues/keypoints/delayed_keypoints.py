@@ -1,9 +1,13 @@
-"""Keypoints below a trunk that the shirt carries: detected after the body is published, about that body, and used in the next
-frame set.
+"""Keypoints of a frame set before, moved on to this one.
 
-The network takes a third of a frame set's time, which nobody who waits for the body need wait for. A keypoint is moved as
-its joint is predicted to move until then, so what it says is by how far the fit before was off; the person's mask is moved
-as the body's middle. Without the shirt keypoints a frame set old are worse; docs/decisions/one-body.md has figures.
+The network takes a third of a frame set's time. Below a trunk that the shirt carries it runs after the body is published,
+about that body, and what it finds is used in the next frame set. Without the shirt keypoints a frame set old are worse than
+none, if they are all there is: the network runs before the fit in every second frame set. Before three cameras and more its
+keypoints are used again in the others: a body that has them in every second one alone is pulled there and let go, at half
+the frame rate.
+
+A keypoint is moved as its joint is predicted to move, so what it says is by how far the fit before was off; the person's mask
+is moved as the body's middle. docs/decisions/one-body.md has figures.
 """
 
 from collections.abc import Callable, Collection
@@ -41,7 +45,7 @@ class _Detection:
 
 
 class DelayedKeypoints:
-    """Keeps the newest detection until a frame set uses it."""
+    """Keeps the newest detection for later frame sets."""
 
     def __init__(self, detectors: KeypointDetectors) -> None:
         self._detectors = detectors
@@ -67,12 +71,33 @@ class DelayedKeypoints:
         found = {i: one for i, one in zip(detecting, each, strict=True) if one is not None}
         self._newest = _Detection(t_ns, joints[0], found)
 
+    def detector(
+        self, fitter: Fitter, predicted: MotionState, t_ns: int, cameras: CameraViews
+    ) -> Callable[[int], JointRays | None]:
+        """See `KeypointDetectors.detector`; keeps what is detected, at t_ns."""
+        found: dict[int, CameraKeypoints] = {}
+        self._newest = _Detection(t_ns, fitter.joints(predicted)[0], found)
+        return self._detectors.detector(fitter, predicted, cameras, found)
+
+    def on_body(self, joints_m: Floats, t_ns: int) -> None:
+        """Joints (J,3) of the body that was fitted to the frame set at t_ns: a detection of it is about that body."""
+        if self._newest is not None and self._newest.t_ns == t_ns:
+            self._newest = replace(self._newest, joints_m=joints_m)
+
     def take(
         self, fitter: Fitter, predicted: MotionState, t_ns: int, cameras: CameraViews
     ) -> Callable[[int], JointRays | None]:
+        """As `moved`; each detection is taken once."""
+        moved = self.moved(fitter, predicted, t_ns, cameras)
+        self.reset()
+        return moved
+
+    def moved(
+        self, fitter: Fitter, predicted: MotionState, t_ns: int, cameras: CameraViews
+    ) -> Callable[[int], JointRays | None]:
         """A function that gives the keypoints of the camera of an index, moved on to the predicted body at t_ns, and marks
-        the person in its picture. Each detection is used once."""
-        newest, self._newest = self._newest, None
+        the person in its picture."""
+        newest = self._newest
         if newest is None or t_ns - newest.t_ns > nanoseconds(_LAST_S):
             return no_detection
         joints_m, _ = fitter.joints(predicted)

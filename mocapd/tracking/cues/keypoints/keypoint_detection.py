@@ -1,6 +1,6 @@
 """Keypoint detection: runs the heatmap network of each camera on a crop about the predicted body."""
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import cv2
@@ -64,23 +64,20 @@ class KeypointDetectors:
         fitter: Fitter,
         predicted: MotionState,
         cameras: CameraViews,
-        detecting: Collection[int] | None = None,
+        found: dict[int, CameraKeypoints] | None = None,
     ) -> Callable[[int], JointRays | None]:
-        """Returns a function that detects the keypoints of the predicted body in the camera of an index, if that is among
-        `detecting` (None: all are), and marks the person in its picture."""
-        detecting = cameras.present if detecting is None else detecting
-        if not detecting:
-            return no_detection
+        """Returns a function that detects the keypoints of the predicted body in the camera of an index, and marks the person
+        in its picture. found: gets the detections, by camera."""
         here = fitter.joints(predicted)
 
         def detect(i: int) -> JointRays | None:
-            if i not in detecting:
+            one = self.detect(fitter, predicted, here, cameras, i)
+            if one is None:
                 return None
-            found = self.detect(fitter, predicted, here, cameras, i)
-            if found is None:
-                return None
-            cameras.each[i].mark_person(found.odds, found.crop)
-            return found.rays
+            if found is not None:
+                found[i] = one
+            cameras.each[i].mark_person(one.odds, one.crop)
+            return one.rays
 
         return detect
 
@@ -101,10 +98,12 @@ class KeypointDetectors:
             there_m, _ = fitter.joints(predict_state(fitter.model, body, late_s))
         return self._detect(fitter, index, cameras.each[index], joints, there_m)
 
-    def term(self, model: BodyModel, rays: Iterable[JointRays | None]) -> tuple[JointTerm, ...]:
-        """The detections as a term of the fit; empty without detections."""
+    def term(
+        self, model: BodyModel, rays: Iterable[JointRays | None], share: float = 1.0
+    ) -> tuple[JointTerm, ...]:
+        """The detections as a term of the fit, with this share of its weight; empty without detections."""
         found = [camera_rays for camera_rays in rays if camera_rays is not None]
-        return (JointTerm(model, found, self._params.term),) if found else ()
+        return (JointTerm(model, found, self._params.term.weighing(share)),) if found else ()
 
     def _detect(
         self,

@@ -54,6 +54,10 @@ class _Seen:
         rays = seen_at(self.true_m, 0.0, FEET, CROSSING)[args[-1]]
         return CameraKeypoints(rays, np.zeros((96, 96), np.float32), _CROP)
 
+    def detector(self, *args: Any) -> Any:
+        """Stands in for `KeypointDetectors`."""
+        return lambda i: args[-1].setdefault(i, self.detect(i)).rays
+
     def rays(self, t_ns: int) -> list[Any]:
         take = self.keypoints.take(self.fitter, _THERE, t_ns, self.cameras)
         return [take(i) for i in self.cameras.present]
@@ -89,3 +93,18 @@ def test_old_keypoints_are_left_out() -> None:
     seen = _Seen()
     seen.keypoints.detect(seen.fitter, _HERE, 0, seen.cameras, [0, 1])
     assert seen.rays(nanoseconds(0.3)) == [None, None]
+
+
+def test_what_is_detected_before_the_fit_is_shared_with_the_next_frame_sets() -> None:
+    """Moved from the body that was fitted to it, wherever that was predicted."""
+    seen = _Seen()
+    detect = seen.keypoints.detector(seen.fitter, _THERE, 0, seen.cameras)
+    assert all(detect(i) is not None for i in seen.cameras.present)
+    seen.keypoints.on_body(seen.joints_m(_HERE), 0)
+    for t_ns in (_NEXT_NS, 2 * _NEXT_NS):
+        moved = seen.keypoints.moved(seen.fitter, _THERE, t_ns, seen.cameras)
+        places_m, _ = JointTerm(
+            BODY, [one for one in map(moved, seen.cameras.present) if one]
+        ).crossings
+        way_m = _THERE.root_m - _HERE.root_m
+        assert np.abs(places_m[FEET] - seen.true_m[FEET] - way_m).max() < 0.004
