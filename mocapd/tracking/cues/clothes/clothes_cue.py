@@ -34,9 +34,8 @@ from mocapd.types import Bytes, FrameSet, Rig
 
 _DEPTHS, _JOINTS = 0, 1  # what alternates; also the look is learned in frames that look for joints
 _DETECTED_EVERY = 2  # ticks, without the shirt
-_SHARED_FROM = (
-    3  # cameras: two lose by keypoints in each frame set what silhouettes alone put right
-)
+# Cameras, from which on keypoints are shared among frame sets; before two, limbs got worse (docs/decisions/one-body.md).
+_SHARED_FROM = 3
 
 
 class ClothesCue:
