@@ -24,7 +24,6 @@ import typer
 from msgspec.structs import replace
 
 from lab.command_line import run
-from mocapd.app.daemon.first_start_tasks import machine_pace
 from mocapd.app.libraries import use_cache_dir
 from mocapd.assets import asset_path
 from mocapd.sim.scenario import load_scenario
@@ -174,6 +173,8 @@ def kernel_seconds(
             )
     say(f"| all {len(rows)} | {sum(row['seconds'] for row in rows):.1f} | | |\n")
     _say_several(rows)
+    from mocapd.app.daemon.first_start_tasks import machine_pace  # it imports numba
+
     pace = machine_pace()
     say(f"this machine takes {pace:.2f} of the time of the table's\n")
     if write:

@@ -133,24 +133,20 @@ class ClothesCue:
             self.legs_rest = True
             return None
         keypoints, every = self._delayed, _DETECTED_EVERY * self._solver.work.network
-        share = 1.0
+        is_shared = not shirt_carries and len(self.cameras.present) >= _SHARED_FROM
         if shirt_carries:
             detect = keypoints.take(self.fitter, predicted, t_ns, self.cameras)
+        elif self._ticks.alternates(every, _JOINTS):
+            detect = keypoints.detector(self.fitter, predicted, t_ns, self.cameras)
+        elif is_shared:
+            detect = keypoints.moved(self.fitter, predicted, t_ns, self.cameras)
         else:
-            is_due = self._ticks.alternates(every, _JOINTS)
-            detect = (
-                keypoints.detector(self.fitter, predicted, t_ns, self.cameras)
-                if is_due
-                else no_detection
-            )
-            if len(self.cameras.present) >= _SHARED_FROM:
-                share = 1.0 / every
-                if not is_due:
-                    detect = keypoints.moved(self.fitter, predicted, t_ns, self.cameras)
+            detect = no_detection
         rays: list[JointRays | None]
         views, rays = self.cameras.prepare(
             predicted, self._solver.searches_everywhere(self._ticks), detect
         )
+        share = 1.0 / every if is_shared else 1.0
         terms = self._solver.terms.joints.term(self.model, rays, share)
         return ClothesObservation(predicted, views, terms)
 
@@ -192,7 +188,7 @@ class ClothesCue:
         if found is not None:
             t_ns = self._pictures.t_ns
             self._search.on_body(found.motion.root_m, t_ns)
-            self._delayed.on_body(self.fitter.joints(found.motion)[0], t_ns)
+            self._delayed.on_body(self.fitter, found.motion, t_ns)
         return found
 
     def fit_lower_body(

@@ -79,10 +79,10 @@ class DelayedKeypoints:
         self._newest = _Detection(t_ns, fitter.joints(predicted)[0], found)
         return self._detectors.detector(fitter, predicted, cameras, found)
 
-    def on_body(self, joints_m: Floats, t_ns: int) -> None:
-        """Joints (J,3) of the body that was fitted to the frame set at t_ns: a detection of it is about that body."""
+    def on_body(self, fitter: Fitter, body: MotionState, t_ns: int) -> None:
+        """The body that was fitted to the frame set at t_ns: a detection of it is about that body."""
         if self._newest is not None and self._newest.t_ns == t_ns:
-            self._newest = replace(self._newest, joints_m=joints_m)
+            self._newest = replace(self._newest, joints_m=fitter.joints(body)[0])
 
     def take(
         self, fitter: Fitter, predicted: MotionState, t_ns: int, cameras: CameraViews

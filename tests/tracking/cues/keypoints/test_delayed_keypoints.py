@@ -100,7 +100,7 @@ def test_what_is_detected_before_the_fit_is_shared_with_the_next_frame_sets() ->
     seen = _Seen()
     detect = seen.keypoints.detector(seen.fitter, _THERE, 0, seen.cameras)
     assert all(detect(i) is not None for i in seen.cameras.present)
-    seen.keypoints.on_body(seen.joints_m(_HERE), 0)
+    seen.keypoints.on_body(seen.fitter, _HERE, 0)
     for t_ns in (_NEXT_NS, 2 * _NEXT_NS):
         moved = seen.keypoints.moved(seen.fitter, _THERE, t_ns, seen.cameras)
         places_m, _ = JointTerm(
