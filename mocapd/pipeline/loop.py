@@ -130,7 +130,7 @@ class PipelineLoop:
         self._recorder.record_body(frames, body, step_ns, now_ns, track.lost_reason)
         if isinstance(self._tracker, LearningTracker):
             self._began_ns = now_ns
-            self._tracker.learn()
+            self._tracker.learn(is_late=not self._collector.idle)
             now_ns, self._began_ns = monotonic_ns(), None
         busy_ns = now_ns - start_ns
         others = self._others.share(now_ns)

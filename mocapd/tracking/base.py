@@ -73,8 +73,11 @@ class RoomLearner(Tracker, Protocol):
 class LearningTracker(Tracker, Protocol):
     """A tracker that learns from a frame set after its body was published, which need not wait for that."""
 
-    def learn(self) -> None:
-        """Learns from the frame set of the last step. Without this call the next step does so first, with the same result."""
+    def learn(self, is_late: bool = False) -> None:
+        """Learns from the frame set of the last step. Without this call the next step does so first, with the same result.
+
+        is_late: the next frame set waits already: what can wait for another one is put off.
+        """
         ...
 
 

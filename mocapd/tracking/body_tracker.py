@@ -164,7 +164,7 @@ class BodyTracker:
         self.probe("publish")
         return track
 
-    def learn(self) -> None:
+    def learn(self, is_late: bool = False) -> None:
         """See LearningTracker. Detects keypoints for the next frame set, and updates each cue's background, light and colours
         from its estimate."""
         if self._unlearned is None:
@@ -175,7 +175,9 @@ class BodyTracker:
             self._shirt.learn(estimates.shirt, present, state is None)
         if clothes is not None:
             if state is not None and state.by_shirt and is_observed:
-                clothes.detect_keypoints(state.motion, state.t_ns, state.legs_since_ns)
+                clothes.detect_keypoints(
+                    state.motion, state.t_ns, state.legs_since_ns, is_late
+                )
                 self.probe("keypoints")
             clothes.learn(estimates.clothes, state is None, state is not None and state.by_shirt)
         self.probe("learn")

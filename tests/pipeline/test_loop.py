@@ -85,8 +85,19 @@ class StudiousTracker(CannedTracker):
         super().__init__()
         self.let_go = threading.Event()
 
-    def learn(self) -> None:
+    def learn(self, is_late: bool = False) -> None:
         self.let_go.wait()
+
+
+class LateTracker(WaitingTracker):
+    """Notes whether it was late."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.late: list[bool] = []
+
+    def learn(self, is_late: bool = False) -> None:
+        self.late.append(is_late)
 
 
 class UnseeingTracker(CannedTracker):
@@ -160,6 +171,19 @@ def test_a_body_is_published_before_the_tracker_learns_from_it() -> None:
     assert not run.loop.stop(0.05)  # it still learns from the first
     tracker.let_go.set()
     assert run.loop.stop(120.0)
+
+
+def test_a_tracker_is_told_that_a_frame_set_waits() -> None:
+    tracker = LateTracker()
+    run = Run(tracker)
+    run.loop.start()
+    run.feed()
+    assert tracker.entered.acquire(timeout=60.0)
+    run.feed()
+    tracker.let_go.release(2)
+    run.wait_for(lambda: len(run.out) == 2)
+    assert run.loop.stop(20.0)
+    assert tracker.late == [True, False]
 
 
 def test_each_pair_gives_a_body_in_order_and_metrics_tell_of_it() -> None:

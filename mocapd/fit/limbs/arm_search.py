@@ -14,7 +14,7 @@ from mocapd.fit.limbs.arms_exchanged import with_arms_exchanged
 from mocapd.fit.limbs.hand_target_poses import hand_target_poses
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
 from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
-from mocapd.fit.limbs.limb_scores import has_depths, score_arm_poses, score_hand_places
+from mocapd.fit.limbs.limb_scores import has_depths, score_arms_and_hands, score_hand_places
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.priors.pose_prior import arm_motions, unusualness
 from mocapd.fit.solver import Fitter
@@ -46,7 +46,7 @@ class ArmSearch:
             tries = candidates(
                 self.fitter, state, arm, views, self._cloud[:1], self._library[side][:1]
             )
-            score_arm_poses(self.fitter, state, arm, views, tries, 0.0, 0.0)
+            score_arms_and_hands(self.fitter, state, arm, views, tries, 0.0, 0.0)
         with_arms_exchanged(self.fitter, state, self.arms)
 
     def improve(
@@ -76,18 +76,20 @@ class ArmSearch:
             if not is_uncertain(side, fit, p, small):
                 continue
             tries = self._candidates(fit.state, arm, views, turn)
-            scores = self._scores(fit.state, arm, views, tries, empty)
+            scores, hands = self._scores(fit.state, arm, views, tries, empty)
             best = best_poses(tries[:, 1:], scores, p.arm_fits)
             starts = [with_limb(fit.state, arm, tries[n]) for n in best]
             cost = partial(self._cost, arm, tries[0], views, empty)
-            better = cheapest_fit(fit, starts, refit, cost, p.arm_gain)
+            least = self._cost_with_hand(arm, tries[0], hands[0], fit) - p.arm_gain
+            better = cheapest_fit(fit, starts, refit, cost, least)
             if better is not fit:
                 fit = better
                 changed.append(side)
         if exchanges:
             start = with_arms_exchanged(self.fitter, fit.state, self.arms)
             far = partial(refit, iterations=_EXCHANGE_ITERATIONS)
-            exchanged = cheapest_fit(fit, [start], far, self._cost_of_both, p.arm_gain)
+            cost, least = self._cost_of_both, self._cost_of_both(fit) - p.arm_gain
+            exchanged = cheapest_fit(fit, [start], far, cost, least)
             if exchanged is not fit:
                 return exchanged, SIDES
         return fit, tuple(changed)
@@ -103,35 +105,34 @@ class ArmSearch:
 
     def _scores(
         self, state: MotionState, arm: Arm, views: Sequence[View], tries: Floats, empty: float
-    ) -> Floats:
-        """Image score of each hypothesis and its hand, less its penalties (N,) [work px]."""
+    ) -> tuple[Floats, Floats]:
+        """Image score of each hypothesis and its hand, less its penalties, and that of the hand alone (N,) [work px]."""
         p = self.params
-        scores = score_arm_poses(self.fitter, state, arm, views, tries, p.farther_px, empty)
-        scores -= p.unusual_px * unusualness(tries, self._usual[arm.side])
-        scores += p.hand_px * score_hand_places(self.fitter, state, arm, views, tries, empty)
-        return scores
+        arms, hands = score_arms_and_hands(
+            self.fitter, state, arm, views, tries, p.farther_px, empty
+        )
+        unusual = unusualness(tries, self._usual[arm.side])
+        return arms - p.unusual_px * unusual + p.hand_px * hands, hands
 
     def _cost(
         self, arm: Arm, here_xyzw: Floats, views: Sequence[View], empty: float, fit: Fit
     ) -> float:
         """Cost of a fit, with the prior on its arm pose (3,4) and the score of its hand."""
+        pose = fit.state.local_xyzw[arm.chain[:3]][None]
+        hand_px = score_hand_places(self.fitter, fit.state, arm, views, pose, empty)[0]
+        return self._cost_with_hand(arm, here_xyzw, hand_px, fit)
+
+    def _cost_with_hand(self, arm: Arm, here_xyzw: Floats, hand_px: float, fit: Fit) -> float:
+        """The same, of a hand that scores so."""
         there = fit.state.local_xyzw[arm.chain[:3]]
         price = self._price(arm.side, there, here_xyzw)
-        return fit.cost_for_any_pose + price - self._hand_px(arm, fit, views, empty)
+        return fit.cost_for_any_pose + price - self.params.hand_cost * float(hand_px)
 
     def _cost_of_both(self, fit: Fit) -> float:
         """Cost of a fit, with the prior on both arm poses."""
         local = fit.state.local_xyzw
         unusual = sum(self._unusual(side, local[arm.chain[:3]]) for side, arm in self.arms.items())
         return fit.cost_for_any_pose + self.params.unusual_cost * unusual
-
-    def _hand_px(self, arm: Arm, fit: Fit, views: Sequence[View], empty: float) -> float:
-        """Image score of the hand in this fit, in the unit of its cost."""
-        if self.params.hand_cost == 0.0:
-            return 0.0
-        pose = fit.state.local_xyzw[arm.chain[:3]][None]
-        score_px = score_hand_places(self.fitter, fit.state, arm, views, pose, empty)
-        return self.params.hand_cost * float(score_px[0])
 
     def _price(self, side: str, there_xyzw: Floats, here_xyzw: Floats) -> float:
         """Prior cost of an arm pose (3,4): unusual, or far from the present pose."""

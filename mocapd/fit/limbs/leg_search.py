@@ -76,7 +76,7 @@ class LegSearch:
             best = best_poses(tries[:, :2], scores, p.fits)
             starts = [with_limb(fit.state, leg, tries[n]) for n in best]
             cost = partial(self._cost, leg, tries[0])
-            better = cheapest_fit(fit, starts, refit, cost, p.gain)
+            better = cheapest_fit(fit, starts, refit, cost, cost(fit) - p.gain)
             if better is not fit:
                 fit = better
                 changed.append(side)

@@ -21,10 +21,10 @@ def cheapest_fit(
     starts: Iterable[MotionState],
     refit: Callable[[MotionState], Fit],
     cost: Callable[[Fit], float],
-    gain: float,
+    least: float,
 ) -> Fit:
-    """The cheapest of the fits that begin at `starts`, if it costs less than this one by more than `gain`; else this one."""
-    best, least = fit, cost(fit) - gain
+    """The cheapest of the fits that begin at `starts`, if it costs less than `least`; else this one."""
+    best = fit
     for start in starts:
         other = refit(start)
         other_cost = cost(other)

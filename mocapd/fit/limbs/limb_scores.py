@@ -37,20 +37,11 @@ def score_arm_poses(
     farther: penalty for the distance from the first pose [work px/rad^2]; empty: weight of the pixels without a label
     against it.
     """
-    model = fitter.model
-    body, arms = fitter.shaper(state.factors), fitter.trunk.arms
-    samples = place_samples(body, arm, arm.labelled)
-    scores = -farther / PX_OF_M2 * turned_rad2(hypotheses[:, 1:], hypotheses[0, 1:])
-    fitter.drawings[views[0].index].pose(state.root_m, state.local_xyzw, body.rest)
-    depths_m2 = np.empty(len(hypotheses))
-    trunk_depths(
-        hypotheses, arm.chain, model.parents, fitter.drawings[views[0].index].posed, fitter.trunk.slices(body),
-        arms.hips, arms.chest, arms.top, depths_m2,
-    )  # fmt: skip
-    scores -= fitter.params.collision_information / PX_OF_M2 * depths_m2
-    # stereo depth separates an arm from a trunk of the same colour
-    covered = 0.0 if has_depths(views) else 1.0
-    scores = added_in_views(fitter, state, arm, views, samples, hypotheses, empty, scores, covered)
+    scores = _penalties_m2(fitter, state, arm, views, hypotheses, farther)
+    samples = place_samples(fitter.shaper(state.factors), arm, arm.labelled)
+    scores = added_in_views(
+        fitter, state, arm, views, samples, hypotheses, empty, scores, _covered(views)
+    )
     score_px: Floats = PX_OF_M2 * scores
     return score_px
 
@@ -73,13 +64,65 @@ def score_hand_places(
 
     def score_in(view: View) -> Floats:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
-        drawn = np.where(arm.is_skin[base.triangle_at], np.uint8(SKIN_LABEL), base.ids)
-        assert view.bare is not None
-        shown = np.where(view.bare, np.uint8(SKIN_LABEL), view.ids)
-        return _scores_in_view(fitter, view, base, drawn, shown, samples, hypotheses, empty)
+        return _hands_in_view(fitter, view, base, arm, samples, hypotheses, empty)
 
     score_px: Floats = PX_OF_M2 * sum(fitter.each(score_in, looked), none)
     return score_px
+
+
+def score_arms_and_hands(
+    fitter: Fitter,
+    state: MotionState,
+    arm: Arm,
+    views: Sequence[View],
+    hypotheses: Floats,
+    farther: float,
+    empty: float,
+) -> tuple[Floats, Floats]:
+    """`score_arm_poses` and `score_hand_places`, with one drawing of the rest of the body for both."""
+    none, covered = np.zeros(len(hypotheses)), _covered(views)
+    scores = _penalties_m2(fitter, state, arm, views, hypotheses, farther)
+    body = fitter.shaper(state.factors)
+    sleeve, hand = place_samples(body, arm, arm.labelled), place_samples(body, arm, arm.hand)
+
+    def score_in(view: View) -> tuple[Floats, Floats]:
+        base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, arm.others)
+        arms = _scores_in_view(
+            fitter, view, base, base.ids, view.ids, sleeve, hypotheses, empty, covered
+        )
+        if view.bare is None:
+            return arms, none
+        return arms, _hands_in_view(fitter, view, base, arm, hand, hypotheses, empty)
+
+    arms, hands = zip(*fitter.each(score_in, views), strict=True)
+    return PX_OF_M2 * sum(arms, scores), PX_OF_M2 * sum(hands, none)
+
+
+def _penalties_m2(
+    fitter: Fitter,
+    state: MotionState,
+    arm: Arm,
+    views: Sequence[View],
+    hypotheses: Floats,
+    farther: float,
+) -> Floats:
+    """What each hypothesis loses by its distance from the first and by its depth in the trunk, below 0 (N,) [m^2]."""
+    model, body, arms = fitter.model, fitter.shaper(state.factors), fitter.trunk.arms
+    drawing = fitter.drawings[views[0].index]
+    drawing.pose(state.root_m, state.local_xyzw, body.rest)
+    depths_m2 = np.empty(len(hypotheses))
+    trunk_depths(
+        hypotheses, arm.chain, model.parents, drawing.posed, fitter.trunk.slices(body),
+        arms.hips, arms.chest, arms.top, depths_m2,
+    )  # fmt: skip
+    away_rad2 = turned_rad2(hypotheses[:, 1:], hypotheses[0, 1:])
+    lost: Floats = -(farther * away_rad2 + fitter.params.collision_information * depths_m2)
+    return lost / PX_OF_M2
+
+
+def _covered(views: Sequence[View]) -> float:
+    """See `score_arms`: stereo depth separates an arm from a trunk of the same colour."""
+    return 0.0 if has_depths(views) else 1.0
 
 
 def added_in_views(
@@ -103,6 +146,22 @@ def added_in_views(
 
     # sum in the order of the views, not of the threads
     return sum(fitter.each(score_in, views), scores)
+
+
+def _hands_in_view(
+    fitter: Fitter,
+    view: View,
+    base: PartialRender,
+    arm: Arm,
+    samples: ArmSamples,
+    hypotheses: Floats,
+    empty: float,
+) -> Floats:
+    """One camera's scores of the hands (N,) [m^2], with skin as a label."""
+    assert view.bare is not None
+    drawn = np.where(arm.is_skin[base.triangle_at], np.uint8(SKIN_LABEL), base.ids)
+    shown = np.where(view.bare, np.uint8(SKIN_LABEL), view.ids)
+    return _scores_in_view(fitter, view, base, drawn, shown, samples, hypotheses, empty)
 
 
 def _scores_in_view(

@@ -99,22 +99,14 @@ def pose_arm(
 
 
 @kernel
-def labels_beside(ids: NDArray[np.uint8], reach: int) -> NDArray[np.int32]:
-    """Bit k of a pixel (h,w) is set where label k is in the square of `reach` pixels around it."""
+def is_beside(ids: NDArray[np.uint8], label: int, y0: int, x0: int, reach: int) -> bool:
+    """Whether a label is in the square of `reach` pixels around a pixel of ids (h,w)."""
     h, w = ids.shape
-    rows = np.zeros((h, w), np.int32)
-    out = np.zeros((h, w), np.int32)
-    for y in range(h):
-        for x in range(w):
-            k = ids[y, x]
-            if k > 0:
-                for o in range(max(0, x - reach), min(w, x + reach + 1)):
-                    rows[y, o] |= np.int32(1) << k
-    for y in range(h):
-        for o in range(max(0, y - reach), min(h, y + reach + 1)):
-            for x in range(w):
-                out[o, x] |= rows[y, x]
-    return out
+    for y in range(max(0, y0 - reach), min(h, y0 + reach + 1)):
+        for x in range(max(0, x0 - reach), min(w, x0 + reach + 1)):
+            if ids[y, x] == label:
+                return True
+    return False
 
 
 @kernel
@@ -157,7 +149,6 @@ def score_arms(
     fx, fy, cx, cy = K[0, 0], K[1, 1], K[0, 2], K[1, 2]
     k1, k2, p1, p2, k3 = dist[0], dist[1], dist[2], dist[3], dist[4]
     knows_depths = depth_m.shape[0] > 0
-    near_base = labels_beside(base_ids, _EDGE_PX)
     for n in range(hypotheses.shape[0]):
         pose_arm(hypotheses[n], chain, parents, rest, R, joints, quats, G, J, M)
         for i in range(n_chain):
@@ -214,7 +205,7 @@ def score_arms(
                     continue
             if seen == label[v]:
                 # where the rest of the body has that label, or all but, it is not the arm that is seen
-                if not near_base[t, u] >> seen & 1:
+                if not is_beside(base_ids, seen, t, u, _EDGE_PX):
                     score += size
             elif seen > 0 and seen == base_ids[t, u]:
                 score -= (

@@ -86,6 +86,7 @@ class ClothesCue:
         self._search.reset()
         self._delayed.reset()
         self._ticks, self._legs, self.legs_rest = Ticks(1, 1, 1), LegSchedule(), False
+        self._is_late = False
 
     def rehearse(self) -> None:
         """See `ClothesSolver`."""
@@ -128,7 +129,7 @@ class ClothesCue:
         if (
             shirt_carries
             and not are_new_legs(t_ns, legs_since_ns, self.params)
-            and self._legs.rests(self._ticks.last, self._solver.work.legs)
+            and self._legs.rests(self._ticks.last, self._solver.work.legs, self._is_late)
         ):
             self.legs_rest = True
             return None
@@ -150,8 +151,12 @@ class ClothesCue:
         terms = self._solver.terms.joints.term(self.model, rays, share)
         return ClothesObservation(predicted, views, terms)
 
-    def detect_keypoints(self, body: MotionState, t_ns: int, legs_since_ns: int | None) -> None:
-        """Detects keypoints about a body that the shirt carries in this frame set, at t_ns, for the next fit of its legs."""
+    def detect_keypoints(
+        self, body: MotionState, t_ns: int, legs_since_ns: int | None, is_late: bool
+    ) -> None:
+        """Detects keypoints about a body that the shirt carries in this frame set, at t_ns, for the next fit of its legs.
+        is_late: the next frame set waits, so the legs rest in it, unless they are new or rested in this one."""
+        self._is_late = is_late
         if not self._knows_look:
             return
         cameras = self._detecting(are_new_legs(t_ns, legs_since_ns, self.params))
@@ -163,7 +168,7 @@ class ClothesCue:
         present, work = self.cameras.present, self._solver.work
         if not self.alone:  # nothing else says how far away the arms are
             return self._legs.keypoints.take(present, self._ticks.last, TICK_S * work.network)
-        if not is_new and self._legs.rests(self._ticks.last + 1, work.legs):
+        if not is_new and self._legs.rests(self._ticks.last + 1, work.legs, self._is_late):
             return ()
         most = len(present) if is_new else (len(present) + 1) // 2
         every_s = self.params.guided_joints_s * work.network

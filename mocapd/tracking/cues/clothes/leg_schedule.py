@@ -3,7 +3,8 @@ their look is learned.
 
 Half of what both cues cost together is legs and head, which mostly stand. While they hardly move they go on as predicted in
 every second frame set: in 33 ms, what is slower than 0.45 m/s strays by less than its fit does. Not before cameras side by
-side, whose toes hang on which points are measured in which frame set (docs/decisions/one-body.md).
+side, whose toes hang on which points are measured in which frame set (docs/decisions/one-body.md). Legs that move rest for
+one frame set where it waits already, so that the tracker catches up instead of missing the next one.
 
 Cameras take turns with the dear work, so that no frame set takes long.
 """
@@ -49,9 +50,9 @@ class LegSchedule:
         self.keypoints, self.look = CameraTurns(), CameraTurns()
         self._places_m, self._is_calm = np.full((len(_JOINTS), 3), np.inf), False
 
-    def rests(self, now: int, every: int) -> bool:
-        """Whether no fit is due; every: ticks between two fits of legs that move."""
-        every += self._is_calm
+    def rests(self, now: int, every: int, is_late: bool = False) -> bool:
+        """Whether no fit is due; every: ticks between two fits of legs that move; is_late: the frame set of `now` waits."""
+        every += self._is_calm or is_late
         return every > 1 and now - self._fitted < every
 
     def on_fit(self, joints_m: Floats, now: int, crossing: bool) -> None:

@@ -9,11 +9,13 @@ from mocapd.tracking.cues.clothes.leg_schedule import CameraTurns, LegSchedule
 STANDING_M = np.tile(np.arange(3.0), (N_JOINTS, 1))
 
 
-def fitted_at(foot_m_s: float, every: int = 1, crossing: bool = True, ticks: int = 12) -> list[int]:
-    """At which ticks legs are fitted of which one foot moves at this speed."""
+def fitted_at(
+    foot_m_s: float, every: int = 1, crossing: bool = True, ticks: int = 12, late: bool = False
+) -> list[int]:
+    """At which ticks legs are fitted of which one foot moves at this speed; late: each frame set waits for the tracker."""
     schedule, out = LegSchedule(), []
     for now in range(ticks):
-        if not schedule.rests(now, every):
+        if not schedule.rests(now, every, late):
             joints_m = STANDING_M.copy()
             joints_m[INDEX["leftFoot"], 0] += foot_m_s * now * TICK_S
             schedule.on_fit(joints_m, now, crossing)
@@ -26,6 +28,12 @@ def test_legs_that_stand_rest_in_every_second_frame_set_and_a_kick_is_followed_i
     assert np.diff(fitted_at(0.1)).max() == 2
     assert np.diff(fitted_at(0.1))[1:].min() == 2
     assert np.diff(fitted_at(0.1, every=2))[2:].min() == 3
+
+
+def test_legs_of_a_tracker_that_is_late_rest_in_no_two_frame_sets_on_end() -> None:
+    assert fitted_at(2.0, late=True) == list(range(0, 12, 2))
+    assert np.diff(fitted_at(0.1, late=True)).max() == 2
+    assert fitted_at(0.1, crossing=False, late=True) == list(range(0, 12, 2))
 
 
 def test_side_by_side_cameras_fit_legs_that_stand_in_each_frame_set() -> None:
