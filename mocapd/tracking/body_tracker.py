@@ -175,9 +175,7 @@ class BodyTracker:
             self._shirt.learn(estimates.shirt, present, state is None)
         if clothes is not None:
             if state is not None and state.by_shirt and is_observed:
-                clothes.detect_keypoints(
-                    state.motion, state.t_ns, state.legs_since_ns, is_late
-                )
+                clothes.detect_keypoints(state.motion, state.t_ns, state.legs_since_ns, is_late)
                 self.probe("keypoints")
             clothes.learn(estimates.clothes, state is None, state is not None and state.by_shirt)
         self.probe("learn")

@@ -88,8 +88,8 @@ class ArmSearch:
         if exchanges:
             start = with_arms_exchanged(self.fitter, fit.state, self.arms)
             far = partial(refit, iterations=_EXCHANGE_ITERATIONS)
-            cost, least = self._cost_of_both, self._cost_of_both(fit) - p.arm_gain
-            exchanged = cheapest_fit(fit, [start], far, cost, least)
+            least = self._cost_of_both(fit) - p.arm_gain
+            exchanged = cheapest_fit(fit, [start], far, self._cost_of_both, least)
             if exchanged is not fit:
                 return exchanged, SIDES
         return fit, tuple(changed)

@@ -29,7 +29,8 @@ class HypothesisContext:
     """The frame set in which hypotheses are tested, dt_s after the last one.
 
     joints: terms of the detected keypoints, none in most frame sets; trunk_prior: information (n_pose,n_pose) of every fit
-    if the shirt places the trunk, so that only legs and head may change.
+    if the shirt places the trunk, so that only legs and head may change; predicted: the body about which the first views were
+    classified.
     """
 
     solvers: RegionSolvers
@@ -38,6 +39,7 @@ class HypothesisContext:
     joints: Sequence[JointTerm]
     evidence: PoseEvidence
     trunk_prior: Floats | None = None
+    predicted: MotionState | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,6 +6,7 @@ from mocapd.tracking.hypotheses.base import HypothesisContext, PoseHypothesis, S
 from mocapd.tracking.hypotheses.hull_poses import HullEnds
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 from mocapd.tracking.hypotheses.limb_poses import ArmPoses, LegPoses
+from mocapd.tracking.hypotheses.moved_limbs import MovedLimbs
 
 
 class HypothesisTests:
@@ -13,6 +14,7 @@ class HypothesisTests:
 
     def __init__(self, params: ClothesParams) -> None:
         self._always: dict[str, PoseHypothesis] = {
+            "moved_limbs": MovedLimbs(),
             "hull_ends": HullEnds(params.hull_ends, params.limbs),
             "keypoint_poses": KeypointPoses(params.keypoint_poses),
         }

@@ -3,6 +3,8 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from mocapd.body.skeleton import INDEX, OTHER_SIDE
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.two_bone_ik import LIMBS, two_bone_pose
@@ -11,9 +13,11 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.term import Term
 from mocapd.geometry import rotations
+from mocapd.tracking.cues.keypoints.keypoint_consensus import LEAST_CAMERAS
 from mocapd.tracking.hypotheses.base import WHOLE
 from mocapd.types import Floats
 
+_KNOWN_SD_M = 0.15  # of a place where rays cross
 _LEGS = [j for name, one in LIMBS.items() if name.endswith("leg") for j in (one.lower, one.end)]
 
 
@@ -119,6 +123,11 @@ def _bent(
 ) -> MotionState:
     joints_m, globals_xyzw = fitter.joints(state)
     places_m = keypoints.places_m(joints_m[0])
+    if (
+        len(keypoints.rays) >= LEAST_CAMERAS
+    ):  # whose rays agree; else places are by each camera's depth
+        crossing_m, sd_m = keypoints.crossings
+        places_m = np.where((sd_m < _KNOWN_SD_M)[:, None], crossing_m, places_m)
     local = state.local_xyzw.copy()
     for name in limbs:
         limb = LIMBS[name]

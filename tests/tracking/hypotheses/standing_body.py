@@ -30,10 +30,10 @@ def standing(yaw_rad: float, spread_rad: float) -> MotionState:
     )  # fmt: skip
 
 
-def drawn(state: MotionState) -> list[View]:
+def drawn(state: MotionState, fitter: Fitter = FITTER) -> list[View]:
     """Pictures in which each region is where this body has it."""
     views = []
-    for i, drawing in enumerate(FITTER.drawings):
+    for i, drawing in enumerate(fitter.drawings):
         roi = drawing.region(state, 0.0, 26)
         assert roi is not None
         ids = drawing.render(state, 0.0, roi).copy()

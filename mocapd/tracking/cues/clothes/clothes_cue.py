@@ -23,6 +23,7 @@ from mocapd.tracking.cues.clothes.clothes_solver import (
 )
 from mocapd.tracking.cues.clothes.leg_schedule import LegSchedule, are_new_legs
 from mocapd.tracking.cues.keypoints.delayed_keypoints import DelayedKeypoints
+from mocapd.tracking.cues.keypoints.keypoint_consensus import agreed_keypoints
 from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
@@ -148,7 +149,9 @@ class ClothesCue:
             predicted, self._solver.searches_everywhere(self._ticks), detect
         )
         share = 1.0 / every if is_shared else 1.0
-        terms = self._solver.terms.joints.term(self.model, rays, share)
+        found = [one for one in rays if one is not None]
+        agreed = agreed_keypoints(found, self.fitter.joints(predicted)[0])
+        terms = self._solver.terms.joints.term(self.model, agreed, share)
         return ClothesObservation(predicted, views, terms)
 
     def detect_keypoints(

@@ -189,7 +189,7 @@ class ClothesSolver:
         probe("clothes.fit")
         at = HypothesisContext(
             self.appearance.solvers, dt_s, ticks, observed.joints,
-            PoseEvidence(self.cameras.classify, terms_of),
+            PoseEvidence(self.cameras.classify, terms_of), predicted=predicted,
         )  # fmt: skip
         best = self._hypotheses.improve(
             ScoredFit(fit, views, terms), at, self._tests_hypotheses(ticks), probe
