@@ -123,9 +123,7 @@ def _bent(
 ) -> MotionState:
     joints_m, globals_xyzw = fitter.joints(state)
     places_m = keypoints.places_m(joints_m[0])
-    if (
-        len(keypoints.rays) >= LEAST_CAMERAS
-    ):  # whose rays agree; else places are by each camera's depth
+    if len(keypoints.rays) >= LEAST_CAMERAS:  # of fewer, none can be told from the others
         crossing_m, sd_m = keypoints.crossings
         places_m = np.where((sd_m < _KNOWN_SD_M)[:, None], crossing_m, places_m)
     local = state.local_xyzw.copy()

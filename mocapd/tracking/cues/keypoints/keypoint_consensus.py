@@ -22,9 +22,7 @@ LEAST_CAMERAS = 3  # of two that contradict each other, either may be wrong
 _LIMBS = (("LowerArm", "Hand"), ("LowerLeg", "Foot", "Toes"))
 _PREDICTED_SD_M = 0.2  # of a joint about its prediction
 _ROBUST2 = 9.0  # squared standard deviations at which a ray has a quarter of its weight
-_EXCHANGE_COST = (
-    3.0  # by which rays must meet better, for each exchange [squared standard deviations]
-)
+_EXCHANGE_COST = 3.0  # of each, which rays must gain by it [squared standard deviations]
 _MOST_EXCHANGED = 2  # cameras
 _REWEIGHTS = 2
 
