@@ -23,29 +23,6 @@ def has_depths(views: Sequence[View]) -> bool:
     return any(view.depth_m is not None for view in views)
 
 
-def score_arm_poses(
-    fitter: Fitter,
-    state: MotionState,
-    arm: Arm,
-    views: Sequence[View],
-    hypotheses: Floats,
-    farther: float,
-    empty: float,
-) -> Floats:
-    """Image score of each hypothesis (N,3,4), less a penalty for the depth in the trunk (N,) [work px].
-
-    farther: penalty for the distance from the first pose [work px/rad^2]; empty: weight of the pixels without a label
-    against it.
-    """
-    scores = _penalties_m2(fitter, state, arm, views, hypotheses, farther)
-    samples = place_samples(fitter.shaper(state.factors), arm, arm.labelled)
-    scores = added_in_views(
-        fitter, state, arm, views, samples, hypotheses, empty, scores, _covered(views)
-    )
-    score_px: Floats = PX_OF_M2 * scores
-    return score_px
-
-
 def score_hand_places(
     fitter: Fitter,
     state: MotionState,
@@ -79,8 +56,15 @@ def score_arms_and_hands(
     farther: float,
     empty: float,
 ) -> tuple[Floats, Floats]:
-    """`score_arm_poses` and `score_hand_places`, with one drawing of the rest of the body for both."""
-    none, covered = np.zeros(len(hypotheses)), _covered(views)
+    """Image score of each hypothesis (N,3,4), less a penalty for the depth in the trunk (N,) [work px], and
+    `score_hand_places`, with one drawing of the rest of the body for both.
+
+    farther: penalty for the distance from the first pose [work px/rad^2]; empty: weight of the pixels without a label
+    against it.
+    """
+    none = np.zeros(len(hypotheses))
+    # stereo depth separates an arm from a trunk of the same colour
+    covered = 0.0 if has_depths(views) else 1.0
     scores = _penalties_m2(fitter, state, arm, views, hypotheses, farther)
     body = fitter.shaper(state.factors)
     sleeve, hand = place_samples(body, arm, arm.labelled), place_samples(body, arm, arm.hand)
@@ -120,11 +104,6 @@ def _penalties_m2(
     return lost / PX_OF_M2
 
 
-def _covered(views: Sequence[View]) -> float:
-    """See `score_arms`: stereo depth separates an arm from a trunk of the same colour."""
-    return 0.0 if has_depths(views) else 1.0
-
-
 def added_in_views(
     fitter: Fitter,
     state: MotionState,
@@ -134,15 +113,12 @@ def added_in_views(
     hypotheses: Floats,
     empty: float,
     scores: Floats,
-    covered: float = 1.0,
 ) -> Floats:
-    """scores (N,) plus each camera's score of a limb in front of the rest of the body [m^2]; covered: see `score_arms`."""
+    """scores (N,) plus each camera's score of a limb in front of the rest of the body [m^2]."""
 
     def score_in(view: View) -> Floats:
         base = fitter.drawings[view.index].render_parts(state, view.dt_s, view.roi, limb.others)
-        return _scores_in_view(
-            fitter, view, base, base.ids, view.ids, samples, hypotheses, empty, covered
-        )
+        return _scores_in_view(fitter, view, base, base.ids, view.ids, samples, hypotheses, empty)
 
     # sum in the order of the views, not of the threads
     return sum(fitter.each(score_in, views), scores)

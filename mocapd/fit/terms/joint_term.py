@@ -63,6 +63,15 @@ class JointRays:
     farther_m: Floats
     depth_information: Floats
 
+    @property
+    def equations(self) -> tuple[Floats, Floats, Floats]:
+        """Rows (N,2,3) and offsets (N,2), which give how far a place [m, world] is beside each ray, and the information
+        (N,2,2) on that [1/m^2]."""
+        R, t_m, (xx, xy, yy) = self.camera.R, self.camera.t_m, self.information.T
+        rows = R[:2] - self.xy[:, :, None] * R[2]
+        information = np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -2)
+        return rows, self.xy * t_m[2] - t_m[:2], information
+
     def of(self, joints: Collection[int]) -> "JointRays":
         """Those of these joints."""
         is_one = np.isin(self.joints, list(joints))
@@ -161,11 +170,10 @@ class JointTerm:
         A, b = np.tile(_NOWHERE, (N_JOINTS, 1, 1)), np.zeros((N_JOINTS, 3))
         cameras = np.zeros(N_JOINTS)
         for one in self.rays:
-            R, t_m, (xx, xy, yy) = one.camera.R, one.camera.t_m, one.information.T
-            rows = R[:2] - one.xy[:, :, None] * R[2]  # (N,2,3): across the ray, by the world's axes
-            weighted = np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -2) @ rows
+            rows, offsets, information = one.equations
+            weighted = information @ rows
             A[one.joints] += rows.transpose(0, 2, 1) @ weighted
-            b[one.joints] += np.einsum("nij,ni->nj", weighted, one.xy * t_m[2] - t_m[:2])
+            b[one.joints] += np.einsum("nij,ni->nj", weighted, offsets)
             cameras[one.joints] += 1.0
         sd_m = np.where(cameras > 1.0, np.linalg.eigvalsh(A)[:, 0] ** -0.5, np.inf)
         places_m: Floats = np.asarray(np.linalg.solve(A, b[:, :, None])[:, :, 0], dtype=np.float64)

@@ -18,7 +18,7 @@ from mocapd.fit.limbs.hull_ends import (
     wrist_at_hull_end,
 )
 from mocapd.fit.limbs.limb_fits import with_limb
-from mocapd.fit.limbs.limb_scores import score_arm_poses
+from mocapd.fit.limbs.limb_scores import score_arms_and_hands
 from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.motion_state import MotionState
 from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
@@ -89,5 +89,6 @@ class HullEnds:
         joints_m, globals_xyzw = fitter.joints(state)
         present = state.local_xyzw[arm.chain[:3]]
         poses = hand_poses(wrist_m[None], joints_m, globals_xyzw, arm, present)
-        scores = score_arm_poses(fitter, state, arm, now.views, poses, 0.0, self._limbs.empty)
+        empty = self._limbs.empty
+        scores, _ = score_arms_and_hands(fitter, state, arm, now.views, poses, 0.0, empty)
         return with_limb(state, arm, poses[int(np.argmax(scores))])

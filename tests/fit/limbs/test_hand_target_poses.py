@@ -10,7 +10,7 @@ from mocapd.body.skeleton import INDEX
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.limbs.arm_samples import Arm, arm_of
 from mocapd.fit.limbs.hand_target_poses import hand_poses, hand_target_poses
-from mocapd.fit.limbs.limb_scores import score_arm_poses
+from mocapd.fit.limbs.limb_scores import score_arms_and_hands
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.types import Floats
@@ -90,7 +90,7 @@ def test_an_arm_stretched_out_to_the_cameras_is_found_by_its_depth(side: str) ->
     tried = hand_target_poses(by, thought, arm, [view], 24, 0)
     assert len(tried)
     tries = np.concatenate([thought.local_xyzw[arm.chain[:3]][None], tried])
-    best = int(np.argmax(score_arm_poses(by, thought, arm, [view], tries, 0.0, 0.5)))
+    best = int(np.argmax(score_arms_and_hands(by, thought, arm, [view], tries, 0.0, 0.5)[0]))
     hand = by.joints(truth)[0][INDEX[f"{side}Hand"]]
     assert best > 0
     off_m = np.linalg.norm(hands(by, arm, tries[best : best + 1])[0] - hand)

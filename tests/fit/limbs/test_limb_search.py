@@ -1,6 +1,7 @@
 """Other poses of an uncertain arm: candidates, their scores, and the arm that is found again."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.limbs.arm_samples import arm_of, place_samples
 from mocapd.fit.limbs.arm_search import ArmSearch, arm_library, is_uncertain
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates
-from mocapd.fit.limbs.limb_scores import score_arm_poses, score_hand_places
+from mocapd.fit.limbs.limb_scores import score_arms_and_hands, score_hand_places
 from mocapd.fit.limbs.limb_search_kernels import score_arms
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
@@ -199,12 +200,16 @@ def test_the_true_arm_scores_above_the_library(side: str, pose: str) -> None:
     assert np.argmax(total) == len(library)
 
 
+def arm_px(*args: Any) -> Floats:
+    return score_arms_and_hands(*args)[0]
+
+
 def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
     by, truth = fitter(2), standing("goalpost", "side_low")
     wrong = swapped(truth, "left", standing("hanging", "hanging"))
     arm, views = arm_of(MODEL, LABELS, "left"), views_of(by, truth)
     tries = candidates(by, wrong, arm, views, NO_CLOUD, arm_library(MODEL.space, 600, "left"))
-    seen_px = score_arm_poses(by, wrong, arm, views, tries, 0.0, EMPTY)
+    seen_px = arm_px(by, wrong, arm, views, tries, 0.0, EMPTY)
     best = best_poses(tries[:, 1:], seen_px, 3)
     assert 1 <= len(best) <= 3
     assert (seen_px[best] > seen_px[0]).all()
@@ -214,17 +219,14 @@ def test_the_best_poses_are_apart_and_better_than_the_present_one() -> None:
     assert off.min() < 0.25
     assert off.min() < 0.5 * np.linalg.norm(arm_joints(by, wrong, "left")[2] - hand)
     at_truth = candidates(by, truth, arm, views, NO_CLOUD, NO_LIBRARY)[:1]
-    assert (
-        best_poses(at_truth[:, 1:], score_arm_poses(by, truth, arm, views, at_truth, 0.0, EMPTY), 3)
-        == []
-    )
+    assert best_poses(at_truth[:, 1:], arm_px(by, truth, arm, views, at_truth, 0.0, EMPTY), 3) == []
 
 
 def test_a_pose_farther_away_must_be_seen_more() -> None:
     by, truth = fitter(2), standing("goalpost", "side_low")
     arm, views = arm_of(MODEL, LABELS, "left"), views_of(by, truth)
     tries = candidates(by, truth, arm, views, NO_CLOUD, arm_library(MODEL.space, 50, "left"))
-    freely, held = (score_arm_poses(by, truth, arm, views, tries, px, EMPTY) for px in (0.0, 10.0))
+    freely, held = (arm_px(by, truth, arm, views, tries, px, EMPTY) for px in (0.0, 10.0))
     np.testing.assert_allclose(held[0], freely[0])
     angle_rad = 2.0 * np.arccos(np.minimum(np.abs((tries[:, 1:] * tries[0, 1:]).sum(axis=2)), 1.0))
     np.testing.assert_allclose(freely - held, 10.0 * (angle_rad**2).sum(axis=1), atol=1e-6)
@@ -237,10 +239,10 @@ def test_an_arm_in_the_trunk_is_worth_less() -> None:
     through = truth.local_xyzw[arm.chain[:3]].copy()
     through[1:] = rotations.exp(np.array([[0.0, 0.0, -1.35], [0.0, 0.0, -0.9]]))
     tries = np.stack([truth.local_xyzw[arm.chain[:3]], through])
-    stiff = score_arm_poses(by, truth, arm, views, tries, 0.0, EMPTY)
+    stiff = arm_px(by, truth, arm, views, tries, 0.0, EMPTY)
     soft_params = replace(by.params, collision_sd_m=10.0)
     soft = Fitter(MODEL, LABELS, [d.camera for d in by.drawings], [FACTOR], soft_params)
-    assert stiff[1] < score_arm_poses(soft, truth, arm, views, tries, 0.0, EMPTY)[1] - 1.0
+    assert stiff[1] < arm_px(soft, truth, arm, views, tries, 0.0, EMPTY)[1] - 1.0
 
 
 def with_bare_skin(by: Fitter, state: MotionState, views: list[View]) -> list[View]:

@@ -77,16 +77,12 @@ def _best_reading(
 
 
 def _equations(rays: Sequence[JointRays]) -> tuple[Floats, Floats, Floats]:
-    """Of each camera and joint: rows (C,J,2,3) and offsets (C,J,2), which give how far a place is beside the ray, and its
-    information (C,J,2,2), 0 without a keypoint."""
+    """`JointRays.equations` of each camera and joint (C,J,...), without a keypoint 0."""
     count = len(rays)
     rows, offsets = np.zeros((count, N_JOINTS, 2, 3)), np.zeros((count, N_JOINTS, 2))
     weights = np.zeros((count, N_JOINTS, 2, 2))
     for i, one in enumerate(rays):
-        camera, joints, (xx, xy, yy) = one.camera, one.joints, one.information.T
-        rows[i, joints] = camera.R[:2] - one.xy[:, :, None] * camera.R[2]
-        offsets[i, joints] = one.xy * camera.t_m[2] - camera.t_m[:2]
-        weights[i, joints] = np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -2)
+        rows[i, one.joints], offsets[i, one.joints], weights[i, one.joints] = one.equations
     return rows, offsets, weights
 
 
