@@ -14,8 +14,9 @@ class HypothesisTests:
 
     def __init__(self, params: ClothesParams) -> None:
         self._always: dict[str, PoseHypothesis] = {
-            "moved_limbs": MovedLimbs(),
+            # first: it reads what was drawn last, which is the fit that it gets
             "hull_ends": HullEnds(params.hull_ends, params.limbs),
+            "moved_limbs": MovedLimbs(),
             "keypoint_poses": KeypointPoses(params.keypoint_poses),
         }
         self._searched: dict[str, PoseHypothesis] = {
