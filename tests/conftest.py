@@ -15,7 +15,7 @@ import pytest
 import tomli_w
 from hypothesis import settings
 
-from mocapd.app.libraries import LOCATORS
+import mocapd.kernels  # noqa: F401 -- before numba, which some tests import by themselves
 
 if TYPE_CHECKING:  # numba takes a second to import, and most tests need none of it
     from mocapd.shirt.pose_database.database import PoseDatabase
@@ -25,9 +25,6 @@ gc.set_threshold(20_000)  # as `mocapd` does: compiling kernels takes a fifteent
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"
 ABSENT = "../shared is not beside this checkout: {} is missing"
-
-# Before numba is imported: what daemons and tests compile is kept once for both.
-os.environ["NUMBA_CACHE_LOCATOR_CLASSES"] = LOCATORS
 
 # No example is judged by how long it took: this machine may be busy.
 settings.register_profile("mocapd", deadline=None, derandomize=True, print_blob=True)

@@ -28,9 +28,9 @@ from mocapd.calibration.from_origin import from_capture
 from mocapd.capture.capture_folder import frame_sets
 from mocapd.clock import nanoseconds, seconds
 from mocapd.evaluate.capture_eval import CaptureResult, Evidence
-from mocapd.fit.idmap_renderer import image_scales
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
+from mocapd.fit.work_size import image_scales
 from mocapd.published.wang2011.classify_kernels import sum_colours
 from mocapd.published.wang2011.distance_maps import DistanceMaps
 from mocapd.shirt.colour.colour_model import ColourModel

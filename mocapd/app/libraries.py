@@ -8,12 +8,6 @@ import mocapd
 from mocapd.boundary.folders import require_own_folder
 from mocapd.errors import CannotCreateError, PermissionDeniedError, mend_of
 
-# numba takes the first locator that accepts a function: the kernels' own, then its default ones.
-LOCATORS = (
-    "mocapd.kernels.locator.KernelLocator,UserProvidedCacheLocator,InTreeCacheLocator,UserWideCacheLocator,"
-    "IPythonCacheLocator,ZipCacheLocator"
-)
-
 
 def prepare_libraries(cache_dir: Path) -> None:
     """Before anything imports numba. Raises CannotCreateError when the cache cannot be written,
@@ -28,11 +22,10 @@ def prepare_libraries(cache_dir: Path) -> None:
 def use_cache_dir(cache_dir: Path) -> None:
     """Makes the folder; numba stores its code there if the package's folder is read-only.
 
-    Call before numba's import, which reads the variables. numba executes cached code, so a folder that others could
+    Call before numba's import, which reads the variable. numba executes cached code, so a folder that others could
     write to is refused. Raises CannotCreateError or PermissionDeniedError.
     """
     _own_folder(cache_dir)
-    os.environ["NUMBA_CACHE_LOCATOR_CLASSES"] = LOCATORS
     package = Path(mocapd.__file__).parent
     if not os.access(package, os.W_OK):
         numba = cache_dir / "numba"

@@ -1,6 +1,5 @@
 """The body model drawn into one camera's work picture, at that camera's own instant."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,29 +12,13 @@ from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.motion_state import MotionState, predict_pose
 from mocapd.fit.surface_labels import SurfaceLabels
+from mocapd.fit.work_size import MAX_SIDE_PX, work_size
 from mocapd.types import Camera, Floats
 from mocapd.vision.raster_kernels import bounds, label_triangles, rasterise
 
 Roi = tuple[int, int, int, int]  # x0, y0, x1, y1 [work px], x1 and y1 excluded
 _NEAREST_M = 0.2  # of a vertex that is in view
-_MAX_SIDE_PX = 480  # of a work picture
-_MAX_WORK_PX = _MAX_SIDE_PX**2
-
-
-def image_scales(cameras: Sequence[Camera], work_width_px: int) -> list[int]:
-    """By how much each camera's frames are averaged down to work pictures about `work_width_px` wide.
-
-    Pictures that are upright or of odd sizes come out smaller, so that they fit into the buffers.
-    """
-    return [
-        max(1, round(camera.size_px[0] / work_width_px), -(-max(camera.size_px) // _MAX_SIDE_PX))
-        for camera in cameras
-    ]
-
-
-def work_size(camera: Camera, image_scale: int) -> tuple[int, int]:
-    """Width and height of a camera's work picture, both even."""
-    return camera.size_px[0] // image_scale & ~1, camera.size_px[1] // image_scale & ~1
+_MAX_WORK_PX = MAX_SIDE_PX**2
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,8 +1,8 @@
 """Where numba keeps a kernel's compiled code, and until when that is good: until the kernel, or one it calls, changes.
 
 numba's own cache is good until the kernel's file changes: an upgrade that touches a comment compiles anew, and one
-that touches a callee in another file goes on with the old code. Named in `NUMBA_CACHE_LOCATOR_CLASSES`, which
-numba reads when it is imported, before its own classes, so that other packages' functions are kept as ever.
+that touches a callee in another file goes on with the old code. The package's `__init__.py` names it to numba before its own
+classes, so that other packages' functions are kept as ever.
 """
 
 from collections.abc import Callable

@@ -21,7 +21,7 @@ from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.config.sections import CameraSection, Config
 from mocapd.errors import ConfigError
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.idmap_renderer import image_scales
+from mocapd.fit.work_size import image_scales
 from mocapd.pipeline.bundler import BundlerParams
 from mocapd.trackers.registry import entry
 from mocapd.types import Rig

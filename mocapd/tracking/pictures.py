@@ -8,7 +8,7 @@ import numpy as np
 
 from mocapd.clock import seconds
 from mocapd.each import Each, in_turn
-from mocapd.fit.idmap_renderer import image_scales, work_size
+from mocapd.fit.work_size import image_scales, work_size
 from mocapd.types import Bytes, Camera, Frame, FrameSet
 from mocapd.vision.frame_size import check_frame_size
 

@@ -1,6 +1,8 @@
 """The cache folder: what lies there is run, so it must be ours."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -8,6 +10,7 @@ import pytest
 import mocapd
 from mocapd.app.libraries import use_cache_dir
 from mocapd.errors import CannotCreateError, PermissionDeniedError
+from tests.conftest import ROOT
 
 
 @pytest.fixture(autouse=True)
@@ -40,3 +43,29 @@ def test_a_cache_that_others_may_write_is_refused(tmp_path: Path, shared: str) -
 def test_a_path_that_cannot_be_is_named(tmp_path: Path) -> None:
     with pytest.raises(CannotCreateError, match="cannot be written"):
         use_cache_dir(tmp_path / ("x" * 300))
+
+
+@pytest.mark.parametrize(
+    "read",
+    [
+        "from mocapd.cli.options import effective_config as of; of(None, None, capture='sim:living_room')",
+        "import mocapd.cli.run",
+        "import mocapd.app.terminal.status_text",
+    ],
+    ids=["configuration", "run", "status"],
+)
+def test_no_kernel_is_imported_before_it_is_known_where_its_code_is_kept(read: str) -> None:
+    """It would be compiled anew, beside what was prepared."""
+    words = [sys.executable, "-c", f"import sys; {read}; print('numba' in sys.modules)"]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
+
+
+def test_the_kernels_own_places_are_known_to_numba_whatever_imports_it() -> None:
+    code = (
+        "import mocapd.body.posing_kernels as kernels; print(kernels.retract._cache._impl.locator)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert "KernelLocator" in done.stdout

@@ -12,8 +12,9 @@ from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import joint_positions
 from mocapd.calibrate.verification.check_measure import EVERY, Measure, MeasuringTracker
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.idmap_renderer import IdMapRenderer, image_scales
+from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.work_size import image_scales
 from mocapd.geometry import rotations
 from mocapd.tracking.base import Probe, Track, no_probe
 from mocapd.tracking.cues.clothes.regions import silhouette_labels

@@ -16,7 +16,6 @@ from mocapd.calibrate.self_calibration.body_rows import BodyRows, RowGatherer
 from mocapd.clock import seconds
 from mocapd.errors import InputError
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.idmap_renderer import image_scales
 from mocapd.fit.motion_state import (
     MotionState,
     apply_step,
@@ -25,6 +24,7 @@ from mocapd.fit.motion_state import (
 )
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
+from mocapd.fit.work_size import image_scales
 from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.base import Track
 from mocapd.types import Camera, Floats, FrameSet

@@ -11,11 +11,12 @@ import numpy as np
 
 from mocapd.body.model import build_model
 from mocapd.fit.fit_result import Fit, confirmed_parts
-from mocapd.fit.idmap_renderer import IdMapRenderer, image_scales
+from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.limbs.arm_search import ArmSearch
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
+from mocapd.fit.work_size import image_scales
 from mocapd.geometry.camera_model import to_camera
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.strokes import COLOURS

@@ -19,10 +19,10 @@ from mocapd.calibrate.self_calibration.keyframes import Keyframe, initial_states
 from mocapd.calibrate.self_calibration.surface_residuals import FreeBody, free_body
 from mocapd.errors import ConfigError
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.idmap_renderer import image_scales
 from mocapd.fit.motion_state import MotionState, apply_step
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
+from mocapd.fit.work_size import image_scales
 from mocapd.geometry.camera_model import centre
 from mocapd.shirt.garment import shirt_labels
 from mocapd.types import Camera, Floats, Rig

@@ -15,10 +15,10 @@ from mocapd.calibrate.self_calibration.patch_tracks import PatchObservation, Pat
 from mocapd.clock import seconds
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.idmap_renderer import image_scales
 from mocapd.fit.motion_state import MotionState, predict_state, step_between
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
+from mocapd.fit.work_size import image_scales
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
 from mocapd.shirt.garment import shirt_labels

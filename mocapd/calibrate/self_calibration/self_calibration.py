@@ -24,7 +24,7 @@ from mocapd.calibrate.self_calibration.ring_bundle import place_by_rings
 from mocapd.calibrate.self_calibration.ring_pairs import ring_pairs
 from mocapd.errors import ConfigError
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.idmap_renderer import image_scales
+from mocapd.fit.work_size import image_scales
 from mocapd.geometry.camera_model import camera_from_world, centre, with_extrinsics
 from mocapd.types import Camera, Floats, Rig
 

@@ -12,10 +12,10 @@ from mocapd.body.skeleton import INDEX, local_from_global
 from mocapd.calibrate.self_calibration.body_rows import RowGatherer
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.idmap_renderer import image_scales
 from mocapd.fit.motion_state import MotionState, initial_information, shape_prior, step_between
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
+from mocapd.fit.work_size import image_scales
 from mocapd.geometry.camera_model import to_camera
 from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.base import Track, Tracker

@@ -11,10 +11,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.fit.idmap_renderer import work_size
 from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
+from mocapd.fit.work_size import work_size
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Floats, Ints, Singles
 from mocapd.vision.hull.soft_carve import carve_log_odds

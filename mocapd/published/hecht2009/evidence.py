@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from mocapd.clock import seconds
-from mocapd.fit.idmap_renderer import image_scales
+from mocapd.fit.work_size import image_scales
 from mocapd.geometry.camera_model import project
 from mocapd.published.hecht2009.cylinders.limb_score import LimbView
 from mocapd.published.hecht2009.cylinders.occlusion import allocate_occlusion, fill_occlusion

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from mocapd.body.arrays import plain
 from mocapd.fit.fit_params import TICK_S
-from mocapd.fit.idmap_renderer import IdMapRenderer, Roi, work_size
+from mocapd.fit.idmap_renderer import IdMapRenderer, Roi
+from mocapd.fit.work_size import work_size
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.colour_tables import ColourTables
 from mocapd.shirt.colour.lut_kernels import classify_by_table

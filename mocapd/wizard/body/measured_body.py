@@ -9,8 +9,9 @@ from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import global_from_local, joint_positions
 from mocapd.calibrate.body_shape.body_shape_fit import BodyObservation
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.idmap_renderer import IdMapRenderer, image_scales
+from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.motion_state import MotionState, predict_pose
+from mocapd.fit.work_size import image_scales
 from mocapd.geometry.camera_model import project
 from mocapd.shirt.garment import shirt_labels
 from mocapd.types import Bytes, Camera, Pose, Skeleton

@@ -7,10 +7,11 @@ import cv2
 import numpy as np
 
 from mocapd.body.surface import LEFT_ARM, RIGHT_ARM
-from mocapd.fit.idmap_renderer import Roi, work_size
+from mocapd.fit.idmap_renderer import Roi
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
+from mocapd.fit.work_size import work_size
 from mocapd.tracking.cues.clothes.appearance import region_distances
 from mocapd.tracking.cues.clothes.camera_view import CameraView
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams

@@ -11,7 +11,6 @@ from mocapd.body.skeleton import INDEX
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.idmap_renderer import image_scales
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.priors.motion_prior import predicted_information
 from mocapd.fit.solver import Fitter
@@ -19,6 +18,7 @@ from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.planted_term import PlantedTerm
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
+from mocapd.fit.work_size import image_scales
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from mocapd.fit.idmap_renderer import Roi, work_size
+from mocapd.fit.idmap_renderer import Roi
 from mocapd.fit.work_rays import work_rays_in_world
+from mocapd.fit.work_size import work_size
 from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.clothes.floor_view_kernels import near_on_floor
 from mocapd.types import Bytes, Camera, Floats

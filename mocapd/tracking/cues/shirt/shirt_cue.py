@@ -12,13 +12,14 @@ from mocapd.clock import nanoseconds
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.idmap_renderer import Roi, image_scales
+from mocapd.fit.idmap_renderer import Roi
 from mocapd.fit.limbs.arm_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
+from mocapd.fit.work_size import image_scales
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.garment import confirmed_colours, shirt_labels
 from mocapd.shirt.pose_database.database import PoseDatabase
