@@ -13,7 +13,6 @@ import numpy as np
 
 from mocapd.assets import asset_path
 from mocapd.types import Bytes, Floats, Singles
-from mocapd.vision.heatmaps.heatmap_kernels import fill_input, read_maps
 
 # In the order of the maps. Left and right of a joint are neighbours
 BODY_JOINTS = (
@@ -80,18 +79,22 @@ class JointNetwork:
 
     def __init__(self) -> None:
         """Read the trained network that comes with mocapd."""
+        # imported here: numba takes half a second, which who makes no network need not wait for
+        from mocapd.vision.heatmaps.heatmap_kernels import fill_input, read_maps
+
+        self._fill_input, self._read_maps = fill_input, read_maps
         # OpenCV's newer engine takes no less time for a network this small
         self._net = cv2.dnn.readNetFromONNX(str(asset_path(_FILE)), cv2.dnn.ENGINE_CLASSIC)
         self._input = np.zeros((1, 4, INPUT_PX, INPUT_PX), np.float32)
 
     def detect(self, picture: Bytes, background: Singles, valid: Bytes) -> DetectedJoints:
         """Joints in a picture (96,96,3) of a person; background (96,96,3): the empty room, where `valid` (96,96) is not 0."""
-        fill_input(picture, background, valid, self._input[0])
+        self._fill_input(picture, background, valid, self._input[0])
         self._net.setInput(self._input)
         maps, mask = self._net.forward(["maps", "mask"])
         n = len(JOINTS)
         out = np.empty((n, 7))
-        read_maps(np.ascontiguousarray(maps[0]), n, out)
+        self._read_maps(np.ascontiguousarray(maps[0]), n, out)
         return DetectedJoints(
             out[:, :2].copy(), out[:, 2:5].copy(), out[:, 5].copy(), out[:, 6].copy(), mask[0, 0].copy()
         )  # fmt: skip
