@@ -79,6 +79,26 @@ def test_the_live_view_shows_cameras_body_rate_and_listeners(
     page.screenshot(path=pictures / "live.jpg", full_page=True, quality=80)
     assert heard == []
     assert "token" not in page.url, "a token in the address bar ends up in screenshots"
+    turned_by_the_keyboard(page)
+    nothing_is_cut_off(page)
+
+
+def turned_by_the_keyboard(page: Page) -> None:
+    """The figure of the live view."""
+    figure = page.locator(".figure-3d canvas")
+    figure.focus()
+    before = figure.screenshot()
+    for _ in range(6):
+        page.keyboard.press("ArrowLeft")
+    page.wait_for_timeout(500)
+    assert figure.screenshot() != before
+
+
+def nothing_is_cut_off(page: Page) -> None:
+    """At the width of a phone."""
+    page.set_viewport_size({"width": 360, "height": 740})
+    page.wait_for_timeout(200)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
 
 
 def test_the_file_leads_the_browser_to_the_setup(page: Page, url: str, runtime_dir: Path) -> None:
@@ -94,27 +114,7 @@ def test_the_file_leads_the_browser_to_the_setup(page: Page, url: str, runtime_d
     page.reload()  # by its cookie
     expect(page.locator("#connection")).to_have_text("Connected", timeout=WAIT_MS)
     assert heard == []
-
-
-@pytest.mark.parametrize("view", ["live", "setup"])
-def test_at_phone_width_nothing_is_cut_off(page: Page, url: str, view: str) -> None:
-    page.set_viewport_size({"width": 360, "height": 740})
-    page.goto(f"{url}#{view}")
-    page.locator(f"#{view} h1").wait_for(timeout=WAIT_MS)
-    wide = page.evaluate("document.documentElement.scrollWidth")
-    assert wide <= 360
-
-
-def test_the_figure_is_turned_by_the_keyboard(page: Page, url: str) -> None:
-    page.goto(f"{url}#live")
-    expect(page.locator("#tracking")).to_have_text("Tracking", timeout=WAIT_MS)
-    figure = page.locator(".figure-3d canvas")
-    figure.focus()
-    before = figure.screenshot()
-    for _ in range(6):
-        page.keyboard.press("ArrowLeft")
-    page.wait_for_timeout(500)
-    assert figure.screenshot() != before
+    nothing_is_cut_off(page)
 
 
 @pytest.mark.parametrize("token", ["?token=wrong", ""])
