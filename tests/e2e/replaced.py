@@ -35,13 +35,11 @@ INSTANCE = "replaced"
 
 
 def write_calibration(folder: Path, cache_dir: Path, stature_m: float) -> None:
-    """What a set-up on the small scenario's cameras would have saved in `folder`/state."""
-    path = folder / "small.toml"
-    path.write_text(SCENARIO)
-    scenario = load_scenario(path)
+    """What a set-up on the scenario's cameras would have saved in `folder`/state."""
+    scenario = load_scenario(SCENARIO)
     setup = load_film(scenario, cache_dir).setup
     cameras = tuple(
-        DraftCamera(one.name, f"sim:{path}#{one.name}", one.size_px, scenario.fps_hz)
+        DraftCamera(one.name, f"sim:{SCENARIO}#{one.name}", one.size_px, scenario.fps_hz)
         for one in setup.rig.cameras
     )
     draft = Draft(
@@ -174,6 +172,7 @@ class Daemon:
             "state_dir = 'state'",
             f"zenoh.port = {self.port}",
             "osc.enabled = false",
+            "tracker.name = 'shirt'",
         )
         (self.folder / "config.toml").write_text("\n".join((*always, *lines)))
 

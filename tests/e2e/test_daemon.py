@@ -24,67 +24,23 @@ from tests.outputs.frames import free_port
 
 pytestmark = pytest.mark.kernels
 
-FRAMES = 90
+FRAMES = 60  # all of the film
 SETTLED_S = 1.0  # from the first frame with a person on
 WORST_RMS_M = 0.06
-SCENARIO = """
-name = "small"
-loop_s = 4.0
-[[cameras]]
-name = "cam0"
-position_m = [-1.4, 1.4, 2.4]
-look_at_m = [0.0, 1.0, 0.0]
-size_px = [320, 240]
-[[cameras]]
-name = "cam1"
-position_m = [1.6, 1.3, 2.2]
-look_at_m = [0.0, 1.0, 0.0]
-size_px = [320, 240]
-clock_offset_s = 0.011
-[[lights]]
-name = "warm"
-position_m = [1.5, 2.0, 1.8]
-colour = [1.0, 0.7, 0.4]
-intensity = 4.0
-[[lights]]
-name = "cool"
-position_m = [-1.5, 2.2, 1.8]
-colour = [0.7, 0.8, 1.0]
-intensity = 3.0
-[[room.things]]
-kind = "box"
-base_m = [-1.0, 0.0, -1.5]
-size_m = [0.5, 0.8, 0.5]
-[[motion.keyframes]]
-t_s = 0.0
-pose = "t_pose"
-at_m = [0.0, 0.0]
-yaw_deg = 0.0
-[[motion.keyframes]]
-t_s = 1.3
-pose = "relaxed"
-at_m = [0.1, 0.05]
-yaw_deg = 15.0
-[[motion.keyframes]]
-t_s = 2.6
-pose = "diagonal"
-at_m = [-0.1, 0.0]
-yaw_deg = -15.0
-"""
+SCENARIO = Path(__file__).with_name("two_webcams.toml")
 
 
 class Running:
     """A daemon on two simulated cameras, with ports of its own."""
 
-    def __init__(self, env: dict[str, str], folder: Path, tracker: str) -> None:
-        self.env, self.scenario = env, folder / "small.toml"
-        self.scenario.write_text(SCENARIO)
+    def __init__(self, env: dict[str, str], tracker: str) -> None:
+        self.env = env
         self.osc_port = free_port(socket.SOCK_DGRAM)
         zenoh_port = free_port(socket.SOCK_STREAM)
         self.endpoint = f"tcp/127.0.0.1:{zenoh_port}"
         self.process = start(
             env,
-            *("run", "--capture", f"sim:{self.scenario}", "--tracker", tracker),
+            *("run", "--capture", f"sim:{SCENARIO}", "--tracker", tracker),
             *("--instance", "e2e", "--set", f"zenoh.port={zenoh_port}"),
             *("--set", f'osc.destinations=["127.0.0.1:{self.osc_port}"]'),
         )
@@ -118,16 +74,14 @@ class Running:
         return self.process.returncode, err
 
 
-def joint_errors_m(
-    frames: list[dict[str, Any]], scenario_file: Path, log: str
-) -> tuple[np.ndarray, np.ndarray]:
+def joint_errors_m(frames: list[dict[str, Any]], log: str) -> tuple[np.ndarray, np.ndarray]:
     """Age (F,) [s] since the first frame, and errors (F,J) [m] against where the person was then.
 
     The daemon logs which frame of the film was shown when; the rest is the scenario's.
     """
     began = re.search(r"frame (\d+) of the film .* is at (\d+) ns", log)
     assert began, log
-    scenario = load_scenario(scenario_file)
+    scenario = load_scenario(SCENARIO)
     world = World(scenario)
     names = JOINT_SETS["upper"]
     errors = []
@@ -141,12 +95,12 @@ def joint_errors_m(
 
 
 @pytest.fixture
-def begin(clean_env: dict[str, str], tmp_path: Path) -> Iterator[Callable[[str], Running]]:
+def begin(clean_env: dict[str, str]) -> Iterator[Callable[[str], Running]]:
     """Starts a daemon with this tracker; it has ended after the test."""
     begun: list[Running] = []
 
     def one(tracker: str) -> Running:
-        begun.append(Running(clean_env, tmp_path, tracker))
+        begun.append(Running(clean_env, tracker))
         return begun[-1]
 
     yield one
@@ -183,7 +137,7 @@ def test_frames_arrive_over_zenoh_and_osc_and_sigterm_ends_it(
     assert code == 0, err
     assert "Traceback" not in err
 
-    ages_s, errors_m = joint_errors_m(live, daemon.scenario, err)
+    ages_s, errors_m = joint_errors_m(live, err)
     rms_m = np.sqrt(np.mean(errors_m[ages_s > SETTLED_S] ** 2))
     assert rms_m < WORST_RMS_M, np.sqrt(np.mean(errors_m**2, axis=1)).round(3)
 

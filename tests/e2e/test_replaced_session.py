@@ -86,7 +86,7 @@ def test_sighup_reads_configuration_and_calibration_again(daemon: Daemon, game: 
     daemon.told(TAKEN_UP, changes + 1)
     daemon.told("only for the next start: osc")
     taken = len(game.heard)
-    wait_until(lambda: len(game.heard) > taken + 60 and game.is_live(), "the person again")
+    wait_until(lambda: len(game.heard) > taken + 30 and game.is_live(), "the person again")
     connected_throughout(game, since, "SIGHUP")
     assert game.ask("rest_skeleton/0")["stature_m"] == 1.78
     wait_until(lambda: game.ask("health")["frame_sets"] > sets, "frame sets counted on")

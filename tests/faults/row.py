@@ -3,6 +3,10 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from tests.conftest import ROOT
+
+_SMALL_ROOM = ROOT / "tests" / "e2e" / "two_webcams.toml"
+
 
 @dataclass(frozen=True, slots=True)
 class Extent:
@@ -13,8 +17,8 @@ class Extent:
 
     @property
     def room(self) -> str:
-        """The simulated room of two webcams: a short run has the one that other tests have rendered."""
-        return "living_room" if self.share >= 1.0 else "first_setup"
+        """The simulated room of two webcams: a short run has a small one, which other tests have rendered."""
+        return "living_room" if self.share >= 1.0 else str(_SMALL_ROOM)
 
     def of(self, count: float, least: float = 1.0) -> float:
         """So much of a count or a time."""
