@@ -102,7 +102,6 @@ def test_no_skeleton_is_invented_from_several_cameras(
     ("folder", "files"),
     [
         ("intel_asl", ("hungry.mkv",)),
-        ("pose2sim_SinglePerson", ("cam01.mp4", "cam02.mp4", "cam03.mp4", "cam04.mp4")),
         ("caliscope_charuco", ("cam_0.mp4", "cam_1.mp4", "cam_2.mp4", "cam_3.mp4")),
     ],
 )
