@@ -19,7 +19,7 @@ WEBCAMS = {
 _PLACES = {"cam0": (-1.5, 2.4), "cam1": (1.6, 2.2), "cam2": (-2.4, -1.2), "cam3": (2.3, -1.4)}
 _HEAD = """
 name = "sockets"
-loop_s = 2.0
+loop_s = 1.0
 [[lights]]
 name = "lamp"
 position_m = [0.5, 2.2, 1.8]
@@ -29,7 +29,7 @@ intensity = 5.0
 t_s = 0.0
 pose = "t_pose"
 [[motion.keyframes]]
-t_s = 1.0
+t_s = 0.5
 pose = "relaxed"
 at_m = [0.2, 0.1]
 """
