@@ -87,22 +87,31 @@ def ended(process: subprocess.Popen[str]) -> tuple[int, float]:
 
 
 def test_it_serves_a_setup_and_a_second_one_attaches_to_it(
-    env: dict[str, str], cameras: tuple[str, ...]
+    env: dict[str, str], cameras: tuple[str, ...], tmp_path: Path
 ) -> None:
-    with running(env, "calibrate", "--no-browser", *cameras) as process:
+    """Each tells the browser of a file, which only this user may read: the token is in no command line."""
+    browser, shown = tmp_path / "browser", tmp_path / "told"
+    words = f'tr "\\0" "\\n" < /proc/$$/cmdline > {shown}.part'
+    browser.write_text(f"#!/bin/sh\n{words}\nmv {shown}.part {shown}\n")
+    browser.chmod(0o700)
+    desktop = env | {"BROWSER": str(browser), "DISPLAY": ":99"}
+    with running(desktop, "calibrate", *cameras) as process:
         url = url_of(process)
+        path = led_by(shown, url)
         told = status(url)
         assert told["cameras"] == ["cam0", "cam1"]
         assert told["setup"] == "cameras"
-        second = mocapd_here(env, "calibrate", "--no-browser", "--step", "check")
+        second = mocapd(desktop, "calibrate", "--step", "check")
         assert second.code == 0, second.err
         assert url in second.out
+        assert led_by(shown, url) == path
         until_s = time.monotonic() + WAIT_S
         while status(url)["setup"] != "check" and time.monotonic() < until_s:
             time.sleep(0.1)
         assert status(url)["setup"] == "check"
         code, _ = ended(process)
         assert code == 0
+    assert not path.exists()
     assert not list(Path(env["XDG_RUNTIME_DIR"]).rglob("page*"))
 
 
@@ -115,7 +124,7 @@ def test_it_attaches_to_a_running_daemon_and_of_two_to_that_of_this_name_or_fold
     with running(env, *words, *off, "--instance", "game") as game:
         url = announced(env, game)
         assert status(url)["setup"] is None
-        outcome = mocapd(env, "calibrate", "--no-browser")
+        outcome = mocapd_here(env, "calibrate", "--no-browser")
         assert outcome.code == 0, outcome.err
         assert outcome.out.strip() == (f"the running mocapd has the cameras; its page: {url}#setup")
         told = status(url)
@@ -143,25 +152,6 @@ def test_it_attaches_to_a_running_daemon_and_of_two_to_that_of_this_name_or_fold
         last = mocapd_here(env, "calibrate", "--no-browser")
         assert url in last.out
         assert ended(game)[0] == 0
-
-
-def test_the_token_is_in_no_command_line(
-    env: dict[str, str], cameras: tuple[str, ...], tmp_path: Path
-) -> None:
-    """The browser is told of a file, which only this user may read."""
-    browser, told = tmp_path / "browser", tmp_path / "told"
-    words = f'tr "\\0" "\\n" < /proc/$$/cmdline > {told}.part'
-    browser.write_text(f"#!/bin/sh\n{words}\nmv {told}.part {told}\n")
-    browser.chmod(0o700)
-    desktop = env | {"BROWSER": str(browser), "DISPLAY": ":99"}
-    with running(desktop, "calibrate", *cameras) as process:
-        url = url_of(process)
-        path = led_by(told, url)
-        attached = mocapd(desktop, "calibrate")
-        assert url in attached.out
-        assert led_by(told, url) == path
-        assert ended(process)[0] == 0
-    assert not path.exists()
 
 
 def led_by(told: Path, url: str) -> Path:
