@@ -273,8 +273,8 @@ def test_a_recording_is_tracked_with_the_saved_file(
     errors = {}
     for name, options in (("true", []), ("saved", ["--calibration", str(setup.saved)])):
         track = tmp_path / f"{name}.npz"
-        command = [sys.executable, "-m", "mocapd.cli.main", "track", str(capture)]
-        command += ["--out", str(track), *options]
+        words = ["track", str(capture), "--tracker", "shirt", "--out", str(track), *options]
+        command = [sys.executable, "-m", "mocapd.cli.main", *words]
         subprocess.run(command, env=user_env, check=True, capture_output=True)
         errors[name] = rms_after_turning_cm(capture, track)
     print("\n" + json.dumps(errors))
