@@ -98,7 +98,7 @@ class Ward:
 def run(extent: Extent) -> Came:
     """See FaultRow."""
     with tempfile.TemporaryDirectory() as folder:
-        room = SocketedRoom(Path(folder))
+        room = SocketedRoom(Path(folder), extent.rate_hz)
         with faulty_daemon(Path(folder), *room.words) as daemon:
             daemon.until(lambda: len(daemon.told) == len(WEBCAMS) and daemon.bodies, "cameras")
             ward = Ward(room, daemon, extent.seed)

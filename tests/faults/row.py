@@ -20,6 +20,11 @@ class Extent:
         """The simulated room of two webcams: a short run has a small one, which other tests have rendered."""
         return "living_room" if self.share >= 1.0 else str(_SMALL_ROOM)
 
+    @property
+    def rate_hz(self) -> float:
+        """Of four webcams in sockets: in a short run half of the usual one."""
+        return 30.0 if self.share >= 1.0 else 15.0
+
     def of(self, count: float, least: float = 1.0) -> float:
         """So much of a count or a time."""
         return max(least, count * self.share)

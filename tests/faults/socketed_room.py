@@ -19,6 +19,7 @@ WEBCAMS = {
 _PLACES = {"cam0": (-1.5, 2.4), "cam1": (1.6, 2.2), "cam2": (-2.4, -1.2), "cam3": (2.3, -1.4)}
 _HEAD = """
 name = "sockets"
+fps_hz = {}
 loop_s = 1.0
 [[lights]]
 name = "lamp"
@@ -53,12 +54,12 @@ srgb = [{}, 120, 90]
 class SocketedRoom:
     """The scenario's file, the control of its sockets, and its pictures."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, rate_hz: float) -> None:
         path = folder / "sockets.toml"
         cameras = (_CAMERA.format(name, *place) for name, place in _PLACES.items())
         spots = ((-1.8, -2.2, 10), (1.2, -2.4, -20), (-1.4, 2.6, 160), (2.2, 1.9, 220))
         things = (_THING.format(*spot, 60 + 40 * i) for i, spot in enumerate(spots))
-        path.write_text("".join((_HEAD, *cameras, *things)))
+        path.write_text("".join((_HEAD.format(rate_hz), *cameras, *things)))
         self.control = SocketControl(folder / "sockets.json", WEBCAMS)
         self.words = ("--capture", f"sim:{path}@{self.control.path}", "--tracker", "canned")
         film = load_film(load_scenario(path), platformdirs.user_cache_path("mocapd"))

@@ -165,7 +165,7 @@ def run(extent: Extent) -> Came:
     """See FaultRow."""
     actions = round(extent.of(ACTIONS, SETTLE_EVERY))
     with tempfile.TemporaryDirectory() as folder:
-        room = SocketedRoom(Path(folder))
+        room = SocketedRoom(Path(folder), extent.rate_hz)
         with faulty_daemon(Path(folder), *room.words, shows=room.shows) as daemon:
             hands = Hands(room, daemon, extent.seed)
             hands.settle()
