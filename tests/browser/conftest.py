@@ -24,7 +24,7 @@ PATIENCE_MS = 240_000  # of a step in a page: this machine may be busy
 PAGE_URL = re.compile(r"http://127\.0\.0\.1:\d+/\?token=\S+")
 
 
-@pytest.fixture(scope="package")  # its event loop must be gone before other tests run theirs
+@pytest.fixture(scope="module")  # its event loop must be gone before other tests run theirs
 def browser() -> Iterator[Browser]:
     """Debian's Chromium; skips where there is none, unless MOCAPD_REQUIRE_BROWSER is set (.ci/run)."""
     path = next((found for name in _NAMES if (found := shutil.which(name))), None)
