@@ -125,7 +125,7 @@ def test_a_board_in_one_camera_only_is_said(pictures: Path, tmp_path: Path) -> N
 def test_a_board_never_seen_by_both_at_once_is_said(pictures: Path, tmp_path: Path) -> None:
     folder = copied(pictures, tmp_path / "n")
     for path in (folder / "cam1").iterdir():
-        path.rename(path.with_name(f"{int(path.stem) + 500}.png"))
+        path.rename(path.with_name(f"{int(path.stem) + 500}.bmp"))
     with pytest.raises(ConfigError, match="at the same moment"):
         calibrate_folder(folder, SPEC, quiet)
 

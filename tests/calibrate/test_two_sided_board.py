@@ -19,8 +19,13 @@ from mocapd.calibrate.extrinsics.board_extrinsics import (
 )
 from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
 from mocapd.calibrate.extrinsics.contradictions import ContradictionError, MirroredError
-from mocapd.calibrate.extrinsics.folder_calibration import FolderCalibration, calibrate_folder
+from mocapd.calibrate.extrinsics.folder_calibration import (
+    FolderCalibration,
+    FolderParams,
+    calibrate_folder,
+)
 from mocapd.calibrate.intrinsics.intrinsics import solve_intrinsics
+from mocapd.calibrate.intrinsics.views import Choice
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.sim.board.board_picture import BoardFilm, PrintedBoard
@@ -44,6 +49,7 @@ RIG = cameras_around()
 NAMES = tuple(camera.name for camera in RIG)
 HELD = 32
 POSES = [*turned_poses(HELD), lying()]
+SHOWN = 20  # of them to the detector
 ASKEW = replace(PRINT, back_shift_m=(0.006, -0.002), back_turn_rad=0.03)
 
 
@@ -73,15 +79,15 @@ def solved(
 
 
 def write_pictures(folder: Path, board: PrintedBoard = PRINT) -> Path:
-    """A folder of PNG per camera; the wearer stands before one camera at each position."""
+    """A folder of pictures per camera; the wearer stands before one camera at each position."""
     for c, camera in enumerate(RIG):
         film = BoardFilm(camera, board)
+        wearer = np.full((camera.size_px[1], camera.size_px[0], 3), 110, np.uint8)
         (folder / camera.name).mkdir(parents=True)
-        for i, pose in enumerate(POSES):
-            picture = film.picture(*pose, seed=100 * c + i)
-            if c == hidden_from(i):
-                picture = np.full_like(picture, 110)
-            cv2.imwrite(str(folder / camera.name / f"{i:04d}.png"), picture)
+        for i, pose in enumerate([*POSES[:SHOWN], lying()]):
+            hidden = c == hidden_from(i)
+            picture = wearer if hidden else film.picture(*pose, seed=100 * c + i)
+            cv2.imwrite(str(folder / camera.name / f"{i:04d}.bmp"), picture)
     return folder
 
 
@@ -92,7 +98,7 @@ def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def calibrated(pictures: Path) -> FolderCalibration:
-    return calibrate_folder(pictures, SPEC, quiet, floor_frame=HELD)
+    return calibrate_folder(pictures, SPEC, quiet, floor_frame=SHOWN)
 
 
 def test_four_cameras_around_the_wearer_are_found(calibrated: FolderCalibration) -> None:
@@ -202,8 +208,9 @@ def test_a_back_that_is_glued_askew_is_told_in_millimetres_and_does_no_harm() ->
     assert abs(scale) <= 0.005
 
 
-@pytest.mark.parametrize("thickness_m", [0.0, 0.005, 0.01])
-@pytest.mark.parametrize("askew", [False, True])
+@pytest.mark.parametrize(
+    ("thickness_m", "askew"), [(0.0, True), (0.005, False), (0.005, True), (0.01, True)]
+)
 def test_the_back_is_measured_since_a_thickness_or_gluing_taken_for_granted_costs_centimetres(
     thickness_m: float, askew: bool
 ) -> None:
@@ -273,7 +280,7 @@ def test_pictures_that_are_all_mirrored_show_on_the_floor() -> None:
 
 def test_a_board_with_two_fronts_is_refused() -> None:
     """The first page was glued on twice: from behind it shows no mirrored markers."""
-    rig_views = views_of(RIG, POSES)
+    rig_views = views_of(RIG, POSES[:12])
     views = {
         name: {
             i: replace(view, back=False, corners_px=_other_front(view)) if view.back else view
@@ -301,19 +308,19 @@ def test_one_side_alone_does_not_reach_all_around() -> None:
 
 
 def test_a_real_camera_that_is_mirrored_is_named(shared_dir: Path, tmp_path: Path) -> None:
-    """Four real webcams and a board in a hand, the pictures of one of them turned round."""
+    """Three real webcams and a board in a hand, the pictures of one of them turned round."""
     folder = shared_dir / "realvideo" / "caliscope_charuco"
     if not folder.is_dir():
         pytest.skip("../shared is not beside this checkout: realvideo/caliscope_charuco is missing")
-    for video in sorted(folder.glob("*.mp4")):
+    for video in sorted(folder.glob("*.mp4"))[:3]:
         target = tmp_path / video.stem
         target.mkdir()
         stream = cv2.VideoCapture(str(video))
         for i in range(57):
             read, pixels = stream.read()
-            if read and i % 3 == 0:
+            if read and i % 4 == 0:
                 shown = pixels[:, ::-1] if video.stem == "cam_2" else pixels
                 cv2.imwrite(str(target / f"{i:04d}.jpg"), shown)
     board = BoardSpec(BoardKind.CHARUCO, 4, 5, 0.054, 0.0405, inverted=True, two_sided=True)
     with pytest.raises(MirroredError, match=r"^cam_2: the pictures are mirrored"):
-        calibrate_folder(tmp_path, board, quiet)
+        calibrate_folder(tmp_path, board, quiet, params=FolderParams(choice=Choice(most=8)))
