@@ -9,7 +9,7 @@ from tests.capture_checks.__main__ import said_of
 from tests.capture_checks.cases import CASES, WrongCapture, make_wrong
 
 CHOSEN = {
-    "25 Hz": "mended",
+    "24 Hz": "mended",
     "millimetres": "refused",
     "left-handed world": "refused",
     "2 frames late, pair_clutter_jacks": "mended",
@@ -25,14 +25,11 @@ def test_a_wrong_capture_is_not_tracked_without_the_right_word(
     case: WrongCapture, dev_captures: Callable[[str], Path], tmp_path: Path
 ) -> None:
     outcome, reasons, words = said_of(make_wrong(case, dev_captures(case.capture).parent, tmp_path))
-    assert set(reasons) & set(case.wanted)
+    assert reasons == case.wanted
     assert outcome == CHOSEN[case.name]
     assert words
 
 
-# the second one with somebody else in the room, whom one camera sees for longer
-@pytest.mark.parametrize("capture", ["pair_outdoor_async", "pair_clutter_martial"])
-def test_a_capture_as_it_is_gives_no_word(
-    capture: str, dev_captures: Callable[[str], Path]
-) -> None:
-    assert said_of(dev_captures(capture)) == ("SILENT", (), [])
+def test_a_capture_as_it_is_gives_no_word(dev_captures: Callable[[str], Path]) -> None:
+    """One with somebody else in the room, whom one camera sees for longer."""
+    assert said_of(dev_captures("pair_clutter_martial")) == ("SILENT", (), [])
