@@ -78,9 +78,10 @@ def joint_positions(skeleton: Skeleton, pose: Pose) -> Floats:
 
 
 def local_from_global(skeleton: Skeleton, global_xyzw: Floats) -> Floats:
-    """Rotations (J,4) relative to the parent bone from global ones."""
-    local = rotations.multiply(rotations.inverse(global_xyzw[skeleton.parents]), global_xyzw)
-    local[0] = global_xyzw[0]
+    """Rotations (...,J,4) relative to the parent bone from global ones."""
+    above = global_xyzw[..., skeleton.parents, :]
+    local = rotations.multiply(rotations.inverse(above), global_xyzw)
+    local[..., 0, :] = global_xyzw[..., 0, :]
     return rotations.canonical(local)
 
 

@@ -54,7 +54,7 @@ class SampledMotion:
     @property
     def local_xyzw(self) -> Floats:
         """Rotations (F,J,4) relative to the parent's."""
-        return np.stack([local_from_global(self.skeleton, frame) for frame in self.global_xyzw])
+        return local_from_global(self.skeleton, self.global_xyzw)
 
     @property
     def local_positions_m(self) -> Floats:

@@ -1,5 +1,8 @@
 """What the tests of every format export: the moving asymmetric person, bones that change a little among it."""
 
+import tempfile
+from dataclasses import fields
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +20,22 @@ SECONDS = 1.5
 MM = 1e-3
 
 
-def recorded_motion(folder: Path) -> SampledMotion:
-    """By way of a recording."""
-    return motion_of(RecordingReader(record(folder / "a.mcap", frames(SECONDS))), 0, None).motion
+@cache
+def recorded_motion() -> SampledMotion:
+    """By way of a recording, once for all; its arrays cannot be written to."""
+    with tempfile.TemporaryDirectory() as folder:
+        recording = record(Path(folder) / "a.mcap", frames(SECONDS))
+        motion = motion_of(RecordingReader(recording), 0, None).motion
+    for one in fields(motion):
+        value = getattr(motion, one.name)
+        if isinstance(value, np.ndarray):
+            value.flags.writeable = False
+    return motion
 
 
 def exported(folder: Path, name: str) -> tuple[SampledMotion, Path]:
     """The motion and its file in this format."""
-    motion = recorded_motion(folder)
+    motion = recorded_motion()
     path = folder / f"a.{name}"
     write_export(motion, name, path)
     return motion, path

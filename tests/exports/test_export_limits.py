@@ -37,8 +37,9 @@ def long_motion(frames: int, joints: int = 1, rate_hz: float = 60.0) -> SampledM
     turns = np.broadcast_to([0.0, 0.0, 0.0, 1.0], (frames, joints, 4))
     ones = np.broadcast_to(1.0, (frames, joints))
     gap = np.zeros(frames, dtype=np.uint8)
+    near_m = np.broadcast_to(0.01, (frames, joints))
     return SampledMotion(
-        rate_hz, Skeleton(names, parents, rest_m), joints_m, turns, ones, gap, 0.01 * ones
+        rate_hz, Skeleton(names, parents, rest_m), joints_m, turns, ones, gap, near_m
     )
 
 
@@ -98,7 +99,7 @@ def test_c3d_names_every_joint(tmp_path: Path, joints: int) -> None:
 
 @pytest.mark.parametrize("width", [1, 63, 64])
 def test_the_longest_names_are_in_every_format(tmp_path: Path, width: int) -> None:
-    motion = recorded_motion(tmp_path)
+    motion = recorded_motion()
     names = tuple(f"{number:x}".rjust(width, "a")[:width] for number in range(22))
     motion = replace(motion, skeleton=replace(motion.skeleton, names=names))
     for name in FORMATS:
@@ -113,7 +114,7 @@ def test_the_longest_names_are_in_every_format(tmp_path: Path, width: int) -> No
 
 @pytest.mark.parametrize("rate_hz", [1.0, 29.97, 119.8801, 1000.0])
 def test_rates_are_kept(tmp_path: Path, rate_hz: float) -> None:
-    motion = replace(recorded_motion(tmp_path), rate_hz=rate_hz)
+    motion = replace(recorded_motion(), rate_hz=rate_hz)
     for name in FORMATS:
         write_export(motion, name, tmp_path / f"a.{name}")
     rate = by_ezc3d(tmp_path / "a.c3d")["parameters"]["POINT"]["RATE"]["value"][0]
@@ -190,14 +191,14 @@ def test_a_file_that_holds_less_than_was_meant_is_an_error(
         path.write_bytes(cut(path.read_bytes()))
 
     monkeypatch.setattr(formats, "FORMATS", {name: replace(whole, write=write_less)})
-    motion = recorded_motion(tmp_path)
+    motion = recorded_motion()
     with pytest.raises(CannotCreateError, match="of 90 frames are readable"):
         write_export(motion, name, tmp_path / f"a.{name}")
     assert not (tmp_path / f"a.{name}").exists()
 
 
 def test_every_byte_of_a_glb_is_accounted_for(tmp_path: Path) -> None:
-    motion = recorded_motion(tmp_path)
+    motion = recorded_motion()
     data = glb_bytes(motion)
     magic, version, length, size = struct.unpack_from("<4sIII", data)
     assert (magic, version, length) == (b"glTF", 2, len(data))

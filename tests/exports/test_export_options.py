@@ -31,7 +31,7 @@ def _seen_as(motion: SampledMotion, names: set[str], confidence: float) -> Sampl
 
 
 def test_legs_that_nobody_saw_are_left_out_and_that_is_said(tmp_path: Path) -> None:
-    motion = _seen_as(recorded_motion(tmp_path), LEGS, 0.0)
+    motion = _seen_as(recorded_motion(), LEGS, 0.0)
     for name in FORMATS:
         made, said = prepared_motion(motion, name, ExportOptions())
         assert "the left leg in 0 %" in said
@@ -51,8 +51,8 @@ def test_legs_that_nobody_saw_are_left_out_and_that_is_said(tmp_path: Path) -> N
         assert "the right leg in 0 %" in said
 
 
-def test_a_limb_that_is_seen_at_times_is_said_and_stays(tmp_path: Path) -> None:
-    motion = _seen_as(recorded_motion(tmp_path), set(), 0.9)
+def test_a_limb_that_is_seen_at_times_is_said_and_stays() -> None:
+    motion = _seen_as(recorded_motion(), set(), 0.9)
     assert prepared_motion(motion, "bvh", ExportOptions())[1] == ""
     confidence = motion.confidence.copy()
     confidence[::2, motion.skeleton.names.index("rightFoot")] = 0.02
@@ -105,7 +105,7 @@ def test_without_a_foot_that_stands_nothing_shows_the_floor() -> None:
 
 def test_z_up_is_the_same_motion_turned(tmp_path: Path) -> None:
     bvhio = pytest.importorskip("bvhio")  # has no wheel for Python 3.14
-    motion = recorded_motion(tmp_path)
+    motion = recorded_motion()
     made, _ = prepared_motion(motion, "bvh", ExportOptions(is_z_up=True))
     for name in ("bvh", "c3d", "trc", "csv"):
         write_export(made, name, tmp_path / f"z.{name}")

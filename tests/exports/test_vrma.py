@@ -69,7 +69,7 @@ def test_an_avatar_is_posed_as_the_person_was(tmp_path: Path) -> None:
 
 def test_a_leg_that_is_not_to_move_keeps_its_bones(tmp_path: Path) -> None:
     motion: SampledMotion = replace(
-        recorded_motion(tmp_path), unmoved=frozenset({"leftUpperLeg", "leftLowerLeg", "leftFoot"})
+        recorded_motion(), unmoved=frozenset({"leftUpperLeg", "leftLowerLeg", "leftFoot"})
     )
     write_export(motion, "vrma", tmp_path / "a.vrma")
     tracks = {name for name, _ in _tracks(tmp_path / "a.vrma")}
@@ -80,7 +80,7 @@ def test_a_leg_that_is_not_to_move_keeps_its_bones(tmp_path: Path) -> None:
 
 
 def test_a_skeleton_without_a_bone_of_avatars_is_refused(tmp_path: Path) -> None:
-    motion = recorded_motion(tmp_path)
+    motion = recorded_motion()
     other = replace(
         motion, skeleton=replace(motion.skeleton, names=("pelvis", *motion.skeleton.names[1:]))
     )
