@@ -1,6 +1,6 @@
 """Why a recording does not show its board: the reason that fits, though most pictures are without any board."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -9,9 +9,10 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.calibrate.board.board_detection import DetectionFailure, Reason
+from mocapd.calibrate.board.board_detection import BoardDetector, DetectionFailure, Reason
 from mocapd.calibrate.board.board_recordings import find_recordings
-from mocapd.calibrate.board.detection_diagnostics import most_telling
+from mocapd.calibrate.board.detection_diagnostics import diagnose_detection, most_telling
+from mocapd.calibrate.extrinsics import board_sighting
 from mocapd.calibrate.extrinsics.board_sighting import (
     BoardSighting,
     SpreadSample,
@@ -23,10 +24,28 @@ from mocapd.errors import ConfigError
 from mocapd.sim.board.board_picture import BoardFilm, PrintedBoard
 from mocapd.types import Bytes
 from tests.calibrate.board_scenes import PRINT, cameras, held_poses
+from tests.calibrate.seen_once import never_written, seen_once
 
 SPEC = BoardSpec(BoardKind.CHARUCO, 5, 6, 0.07, 0.052)
 (CAMERA,) = cameras(1)
 PICTURES = 40
+POSES = held_poses(PICTURES)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def boards_seen_once() -> Iterator[None]:
+    """Most of the pictures show the same wall, of which the same is said each time."""
+    said: dict[tuple[BoardSpec, bytes], DetectionFailure] = {}
+
+    def diagnose_once(detector: BoardDetector, pixels: Bytes, index: int = 0) -> DetectionFailure:
+        key = (detector.spec, pixels.tobytes())
+        if key not in said:
+            said[key] = diagnose_detection(detector, pixels, index)
+        return replace(said[key], index=index)
+
+    with seen_once(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(board_sighting, "diagnose_detection", diagnose_once)
+        yield
 
 
 def quiet(what: str, done: int, total: int) -> None:
@@ -40,6 +59,18 @@ def wall() -> Bytes:
     return rng.normal(110.0, 2.0, (CAMERA.size_px[1], CAMERA.size_px[0], 3)).astype(np.uint8)
 
 
+@cache
+def film(board: PrintedBoard) -> BoardFilm:
+    """The camera's view of this board."""
+    return BoardFilm(CAMERA, board)
+
+
+@cache
+def held(board: PrintedBoard, i: int) -> Bytes:
+    """The i-th picture of a recording, which shows this board."""
+    return never_written(film(board).picture(*POSES[i], seed=i))
+
+
 def sighted(
     folder: Path,
     spec: BoardSpec,
@@ -48,13 +79,12 @@ def sighted(
     change: Callable[[Bytes], Bytes] = lambda pixels: pixels,
 ) -> BoardSighting:
     """What is found in a recording of a wall before which the board is held in the pictures `shown`."""
-    film, poses = BoardFilm(CAMERA, board), held_poses(PICTURES)
     (folder / "left").mkdir()
     empty = cv2.imencode(".jpg", wall())[1].tobytes()
     for i in range(PICTURES):
         path = folder / "left" / f"{i:04d}.jpg"
         if i in shown:
-            cv2.imwrite(str(path), change(film.picture(*poses[i], seed=i)))
+            cv2.imwrite(str(path), change(held(board, i)))
         else:
             path.write_bytes(empty)
     (recording,) = find_recordings(folder)
@@ -134,7 +164,7 @@ def test_a_second_without_a_board(shared_dir: Path) -> None:
         (replace(spec, columns=7, rows=5), "it fits rows of 5 squares, 7x5 was given"),
     ):
         with pytest.raises(ConfigError, match=said):
-            refuse_unseen([sight_board(recording, given, 6, quiet)])
+            refuse_unseen([sight_board(recording, given, 12, quiet)])
 
 
 def test_what_is_seen_outranks_what_is_not() -> None:
