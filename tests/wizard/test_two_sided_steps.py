@@ -38,7 +38,7 @@ from tests.wizard.board_pictures import EMPTY, draft_cameras
 from tests.wizard.context import FakeContext
 
 RIG = cameras_around()
-POSES = turned_poses(24)
+POSES = turned_poses(16)
 ASKEW = replace(PRINT, back_shift_m=(0.006, -0.002))
 
 
