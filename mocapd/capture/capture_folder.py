@@ -13,7 +13,7 @@ from mocapd.boundary.numbers import brief, finite_number
 from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, FileSource, probe_video, size_error
 from mocapd.capture.frame_groups import as_set, due_frames, half_period_ns
 from mocapd.capture.pace import Pace
-from mocapd.capture.video_times import video_times
+from mocapd.capture.video_times import stored_times
 from mocapd.errors import ConfigError, EndOfStream, InputError, MalformedError
 from mocapd.geometry.rig_file import load_rig, read_json
 from mocapd.shirt.colour.strokes import require_pictures, stroked_pictures, strokes_path
@@ -152,7 +152,7 @@ def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> Re
         raise size_error(str(video), name, info.size_px, size_px)
     offset_s = entry.get("time_offset_s", 0.0)
     stated_hz = _number(entry.get("fps", info.fps_hz), "fps", SLOWEST_HZ, FASTEST_HZ, where)
-    times = video_times(video, _TIMED_FRAMES)
+    times = stored_times(video, _TIMED_FRAMES)
     if not times.unknown and abs(times.rate_hz / stated_hz - 1.0) > _SAME_RATE:
         _LOG.warning(
             "%s: 'fps' is %g, but the frames of %s are stamped at %.4g Hz: the stamps are used -- correct 'fps'",

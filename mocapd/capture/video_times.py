@@ -18,6 +18,7 @@ from mocapd.errors import InputError
 from mocapd.types import Floats
 
 _LONGEST_GAP_S = 60.0  # a longer one is a damaged stamp
+_REORDERED = 16  # frames at most that H.264 and its like store before one that is shown earlier
 _ROUNDING_S = 1.5e-3  # Matroska stamps whole milliseconds
 _UNEVEN = (
     0.15  # of a period, by which steps of a constant rate may differ: rounding of coarse time bases
@@ -46,21 +47,41 @@ def video_times(path: Path, most_frames: int | None = None) -> VideoTimes:
     """Read the stamps of a file's frames, or of its first `most_frames`: all of them are decoded for it, at some
     thousand a second. Raises InputError when the file is missing, damaged or empty."""
     header = probe_video(path)
-    capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG, [cv2.CAP_PROP_N_THREADS, 1])
-    stamps_ms: list[float] = []
-    first = 0.0
-    try:
-        while (most_frames is None or len(stamps_ms) < most_frames) and capture.grab():
-            stamps_ms.append(capture.get(cv2.CAP_PROP_POS_MSEC))
-            if len(stamps_ms) == 1:
-                first = capture.get(cv2.CAP_PROP_PTS)  # in periods of the header's rate, whole
-    finally:
-        capture.release()
-    if not stamps_ms:
+    stamps_s, periods = _stamps(path, most_frames, [])
+    if len(stamps_s) == 0:
         raise InputError(
             "the video holds no frame that can be decoded", str(path), "record it again"
         )
-    return times_of_stamps(1e-3 * np.array(stamps_ms), header.fps_hz, first / header.fps_hz)
+    return times_of_stamps(stamps_s, header.fps_hz, periods[0] / header.fps_hz)
+
+
+def stored_times(path: Path, most_frames: int | None = None) -> VideoTimes:
+    """The same for every frame that the file stores, whether it can be decoded or not: none is decoded, which takes a
+    fiftieth of the time. Where frames are stored in another order than shown, and not at a constant rate, their stamps
+    may be damaged: there it is `video_times`. Raises InputError as that."""
+    header = probe_video(path)
+    most = None if most_frames is None else most_frames + _REORDERED
+    stamps_s, periods = _stamps(path, most, [cv2.CAP_PROP_FORMAT, -1])  # as stored
+    order = np.argsort(stamps_s, kind="stable")[:most_frames]
+    if len(order) == 0:
+        return video_times(path, most_frames)
+    times = times_of_stamps(stamps_s[order], header.fps_hz, periods[order[0]] / header.fps_hz)
+    believed = times.is_constant or (np.diff(order) == 1).all()
+    return times if believed and not times.unknown else video_times(path, most_frames)
+
+
+def _stamps(path: Path, most_frames: int | None, how: list[int]) -> tuple[Floats, Floats]:
+    """Of the frames (F,) of a file opened so [s], also in periods of the header's rate, which are whole."""
+    capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG, [*how, cv2.CAP_PROP_N_THREADS, 1])
+    stamps_ms: list[float] = []
+    periods: list[float] = []
+    try:
+        while (most_frames is None or len(stamps_ms) < most_frames) and capture.grab():
+            stamps_ms.append(capture.get(cv2.CAP_PROP_POS_MSEC))
+            periods.append(capture.get(cv2.CAP_PROP_PTS))
+    finally:
+        capture.release()
+    return 1e-3 * np.array(stamps_ms), np.array(periods)
 
 
 def times_of_stamps(stamps_s: Floats, header_hz: float, start_s: float = 0.0) -> VideoTimes:

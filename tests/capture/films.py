@@ -36,10 +36,14 @@ def number_of(pixels: Bytes) -> int:
 
 
 def write_film(
-    path: Path, frames: int, fps_hz: float = 30.0, size_px: tuple[int, int] = SIZE_PX
+    path: Path,
+    frames: int,
+    fps_hz: float = 30.0,
+    size_px: tuple[int, int] = SIZE_PX,
+    code: str = "MJPG",
 ) -> Path:
-    """A film of numbered pictures; Motion JPEG in AVI, where each frame stands alone."""
-    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), fps_hz, size_px)
+    """A film of numbered pictures; Motion JPEG in AVI, where each frame stands alone, unless told otherwise."""
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*code), fps_hz, size_px)
     assert writer.isOpened()
     for index in range(frames):
         writer.write(picture(index, size_px))
