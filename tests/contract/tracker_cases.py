@@ -10,7 +10,7 @@ from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.published.hecht2009.build import build_hecht2009_tracker
 from mocapd.published.rao_hodges.build import build_rao_hodges_tracker
 from mocapd.published.wang2011.build import build_wang2011_tracker
-from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, build_database
+from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
@@ -27,16 +27,19 @@ START_NS = 86_400_000_000_000  # a day after boot: times are large on a machine 
 PERIOD_NS = 33_333_333
 N_PERSON, N_EMPTY = 10, 6
 N_BEFORE = 24  # of an empty room, in which a background is learned
+N_STAYS = 22  # of somebody in it after that
+LIVE_AFTER = N_BEFORE + 6
 
 
 @dataclass(frozen=True)
 class TrackerCase:
-    """`person`: in order of time, long enough to become live and stay so; `empty`: nobody in sight; carriers: which
-    cues its bodies may be carried by, none for a tracker that names itself."""
+    """`person`: in order of time, long enough to become live in the first `half` frames and stay so; `empty`: nobody in
+    sight; carriers: which cues its bodies may be carried by, none for a tracker that names itself."""
 
     tracker: Stepping
     person: list[FrameSet]
     empty: list[FrameSet]
+    half: int
     carriers: tuple[str, ...] = ()
 
 
@@ -74,22 +77,21 @@ def canned_case() -> TrackerCase:
     )
     known = Calibration(wearer=Wearer(1.7))
     tracker = build("canned", known, Resources())
-    return TrackerCase(Stepping(tracker, wearer_shape(known)), sets, sets)
+    return TrackerCase(Stepping(tracker, wearer_shape(known)), sets, sets, len(sets) // 2)
 
 
 @dataclass(frozen=True, eq=False)
 class Filmed:
-    """What both shirt trackers are built from, and what is shown to them."""
+    """What trackers are built from, and what is shown to them."""
 
     known: Calibration
-    database: PoseDatabase
     person: list[FrameSet]
     empty: list[FrameSet]
 
 
 @cache
 def filmed() -> Filmed:
-    """Two simulated webcams in a room with things in it; a pose database of a fiftieth of the size."""
+    """Two simulated webcams in a room with things in it."""
     cameras = [camera | {"size_px": [320, 240]} for camera in small.table()["cameras"]]
     scenario = small.scenario(cameras=cameras)
     renderers = camera_renderers(World(scenario))
@@ -102,18 +104,19 @@ def filmed() -> Filmed:
     }
     return Filmed(
         known,
-        build_database(DatabaseParams(count=1600, cells=32)),
         frame_sets(person, offset_ns=offset_ns),
         frame_sets(empty, offset_ns=offset_ns),
     )
 
 
 def shirt_case(
-    build_tracker: Callable[[Calibration, PoseDatabase], Tracker], *carriers: str
+    build_tracker: Callable[[Calibration, PoseDatabase], Tracker],
+    database: PoseDatabase,
+    *carriers: str,
 ) -> TrackerCase:
     shown = filmed()
-    tracker = Stepping(build_tracker(shown.known, shown.database), wearer_shape(shown.known))
-    return TrackerCase(tracker, shown.person, shown.empty, carriers)
+    tracker = Stepping(build_tracker(shown.known, database), wearer_shape(shown.known))
+    return TrackerCase(tracker, shown.person, shown.empty, N_PERSON // 2, carriers)
 
 
 BEHIND = {"name": "behind", "position_m": [0.3, 1.5, -3.2], "look_at_m": [0.0, 1.0, 0.0]}
@@ -139,10 +142,10 @@ def filmed_from_empty(ring: bool = False) -> Filmed:
         r.camera.name: [r.picture(None, np.ones(2), noise_key=i) for i in range(N_BEFORE)]
         for r in renderers
     }
-    person = {r.camera.name: [r.frame(i) for i in range(N_BEFORE + 12)] for r in renderers}
+    person = {r.camera.name: [r.frame(i) for i in range(N_STAYS)] for r in renderers}
     shown = {name: empty[name] + person[name] for name in empty}
     known = calibration_of_setup(setup_of(scenario, renderers))
-    return Filmed(known, filmed().database, frame_sets(shown), frame_sets(empty))
+    return Filmed(known, frame_sets(shown), frame_sets(empty))
 
 
 def plain_case(
@@ -150,16 +153,18 @@ def plain_case(
 ) -> TrackerCase:
     shown = filmed_from_empty(ring)
     tracker = Stepping(build_tracker(shown.known), wearer_shape(shown.known))
-    return TrackerCase(tracker, shown.person, shown.empty, carriers)
+    return TrackerCase(tracker, shown.person, shown.empty, LIVE_AFTER, carriers)
 
 
-# One line per tracker of mocapd.trackers.registry.TRACKERS.
-CASES: Mapping[str, Callable[[], TrackerCase]] = {
-    "auto": lambda: shirt_case(auto_tracker, "shirt", "clothes", "shirt+clothes"),
-    "canned": canned_case,
-    "shirt": lambda: shirt_case(shirt_tracker, "shirt"),
-    "wang2011": lambda: shirt_case(build_wang2011_tracker),
-    "markerless": lambda: plain_case(markerless_tracker, "clothes"),
-    "hecht2009": lambda: plain_case(build_hecht2009_tracker),
-    "rao_hodges": lambda: plain_case(build_rao_hodges_tracker, ring=True),
+# One line per tracker of mocapd.trackers.registry.TRACKERS; a small database is enough for those of the shirt.
+CASES: Mapping[str, Callable[[PoseDatabase], TrackerCase]] = {
+    "auto": lambda database: shirt_case(
+        auto_tracker, database, "shirt", "clothes", "shirt+clothes"
+    ),
+    "canned": lambda _: canned_case(),
+    "shirt": lambda database: shirt_case(shirt_tracker, database, "shirt"),
+    "wang2011": lambda database: shirt_case(build_wang2011_tracker, database),
+    "markerless": lambda _: plain_case(markerless_tracker, "clothes"),
+    "hecht2009": lambda _: plain_case(build_hecht2009_tracker),
+    "rao_hodges": lambda _: plain_case(build_rao_hodges_tracker, ring=True),
 }
