@@ -56,19 +56,28 @@ def _view(of: Camera) -> tuple[Floats, Floats, Floats]:
     return centre, directions, WALL_BGR * shade[..., None]
 
 
+@cache
+def _lit_wall(of: Camera, light: float) -> Bytes:
+    return _levels(light * _view(of)[2])
+
+
+def _levels(light: Floats) -> Bytes:
+    return np.asarray(np.clip(light, 0, 255), np.uint8)
+
+
 def picture(of: Camera, balls: tuple[Ball, ...], light: float = 1.0) -> Bytes:
     """What the camera sees (h,w,3) BGR of balls, the nearer before the farther, and a wall 4 m behind the origin."""
-    centre, directions, wall = _view(of)
-    out = wall.copy()
+    centre, directions, _ = _view(of)
+    out = _lit_wall(of, light).copy()
     for ball in sorted(balls, key=lambda b: -float(np.linalg.norm(b.middle_m - centre))):
         x, y = project(of, ball.middle_m).astype(int).tolist()
         reach = int(1.3 * 300.0 * ball.radius_m / float(np.linalg.norm(ball.middle_m - centre))) + 2
         part = slice(max(0, y - reach), y + reach + 1), slice(max(0, x - reach), x + reach + 1)
-        _draw(ball, centre, directions[part], out[part])
-    return np.asarray(np.clip(light * out, 0, 255), np.uint8)
+        _draw(ball, centre, directions[part], light, out[part])
+    return out
 
 
-def _draw(ball: Ball, centre: Floats, directions: Floats, out: Floats) -> None:
+def _draw(ball: Ball, centre: Floats, directions: Floats, light: float, out: Bytes) -> None:
     """A grain of a few millimetres, so that two views can be matched, and hair on the upper back."""
     to_middle = ball.middle_m - centre
     along = directions @ to_middle
@@ -85,4 +94,4 @@ def _draw(ball: Ball, centre: Floats, directions: Floats, out: Floats) -> None:
     if ball.has_face:
         face = (abs(x) < 0.029) & (abs(y) < 0.029) & (z > 0.0)
         colour = np.where(face[..., None], SKIN_BGR * 1.25, colour)
-    out[hit] = colour[hit]
+    out[hit] = _levels(light * colour[hit])
