@@ -15,7 +15,7 @@ from tests.sim.small import LAMP_OFF_S, scenario
 
 pytestmark = pytest.mark.kernels
 
-SECONDS, APPEARS_S = 1.5, 0.2
+SECONDS, APPEARS_S = 1.1, 0.2
 
 
 @pytest.fixture(scope="module")

@@ -4,16 +4,16 @@ from pathlib import Path
 
 import pytest
 
+from lab.evaluation import evaluation
+from mocapd.errors import ConfigError
 from tests.lab.lab_process import lab
 from tests.sim.kept_capture import kept_capture
 from tests.sim.small import scenario
 
 pytestmark = pytest.mark.kernels
 
-SECONDS, APPEARS_S = (
-    1.5,
-    0.2,
-)  # as in tests/evaluate/test_command.py, so that one capture serves both
+# as in tests/evaluate/test_command.py and test_roc_of_capture.py, so that one capture serves all
+SECONDS, APPEARS_S = 1.1, 0.2
 
 
 @pytest.fixture(scope="module")
@@ -36,12 +36,12 @@ def test_the_published_tracker_is_set_beside_itself_without_each_of_its_steps(
 
 
 def test_only_trackers_that_have_rivals_are_compared(
-    capture: Path, clean_env: dict[str, str]
+    capture: Path, empty_home: Path, cache_home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    outcome = lab(clean_env, "evaluation", capture, "--tracker", "canned", "--compare")
-    assert outcome.code == 78
-    assert "canned" in outcome.err
-    assert "--tracker shirt" in outcome.err
+    monkeypatch.setenv("XDG_CACHE_HOME", str(cache_home))
+    with pytest.raises(ConfigError, match=r"'canned' has no baseline.*--tracker shirt") as told:
+        evaluation([capture], "canned", compare_with_rivals=True)
+    assert told.value.exit_code == 78
 
 
 def test_predictions_of_a_still_body_are_scored(capture: Path, clean_env: dict[str, str]) -> None:
