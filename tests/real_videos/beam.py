@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import cv2
@@ -12,7 +12,7 @@ from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import PARENTS
 from mocapd.calibration.calibration_record import Calibration, Wearer
 from mocapd.capture.capture_folder import sources_in_step
-from mocapd.capture.file import FileSource
+from mocapd.capture.file import FileSource, probe_video
 from mocapd.clock import seconds
 from mocapd.geometry.camera_model import project
 from mocapd.geometry.rig_file import camera_from_dict
@@ -30,6 +30,7 @@ STATURE_M = 1.70  # the top of his cap before the floor, by both cameras, where 
 SCALE = 3  # of the pictures looked at, smaller than the videos
 NEAR_PX = 3  # about his outline [px of the small pictures]: two centimetres
 INSIDE = 0.9  # of the points along the bones, for a skeleton that counts as inside
+_ROOM_EVERY = 2  # of the frames, those of which the room is made
 _ALONG = np.linspace(0.0, 1.0, 5)  # points on each bone
 _Z_UP_FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
@@ -69,16 +70,23 @@ def beam_walk(folder: Path, tiles: int, every: int = 1) -> BeamWalk:
     def sets(names: Sequence[str]) -> Iterator[FrameSet]:
         return sources_in_step([FileSource(one, folder / f"{one}.mp4") for one in names])
 
-    small: dict[str, list[Bytes]] = {name: [] for name in cameras}
-    times_s = []
-    for one in sets(tuple(cameras)):
-        times_s.append(seconds(one.t_ns))
-        for name, shown in small.items():
-            shown.append(_smaller(one.frames[name].pixels))
-    rooms = {name: _room(shown, times_s) for name, shown in small.items()}
-    n = len(times_s)
-    learn_room(tracker, sets(CAMERAS), n)
+    n = probe_video(folder / f"{CAMERAS[0]}.mp4").frames
     pictured = set(np.linspace(0, n - 1, tiles + 1).astype(int)[1:].tolist())
+    small: dict[str, dict[int, Bytes]] = {name: {} for name in cameras}
+    times_s = []
+
+    def seen() -> Iterator[FrameSet]:
+        """What the tracker sees; kept are small pictures of all cameras."""
+        for number, one in enumerate(sets(tuple(cameras))):
+            times_s.append(seconds(one.t_ns))
+            if number % _ROOM_EVERY == 0 or number % every == 0 or number in pictured:
+                for name, shown in small.items():
+                    shown[number] = _smaller(one.frames[name].pixels)
+            yield replace(one, frames={name: one.frames[name] for name in CAMERAS})
+
+    learn_room(tracker, seen(), n)
+    assert len(times_s) == n
+    rooms = {name: _room(shown, times_s) for name, shown in small.items()}
     inside: dict[int, float] = {}
     elsewhere: dict[int, float] = {}
     rows: list[list[Bytes]] = [[] for _ in CAMERAS]
@@ -114,10 +122,12 @@ def share_inside(cameras: Sequence[Camera], joints_m: Floats, before: Sequence[B
     return float(np.mean(on))
 
 
-def _room(shown: Sequence[Bytes], times_s: Sequence[float]) -> RoomBackground:
+def _room(shown: Mapping[int, Bytes], times_s: Sequence[float]) -> RoomBackground:
     h, w = shown[0].shape[:2]
     room = RoomBackground(h, w, BackgroundParams())
-    room.set_known(*clip_background(shown[::2], np.array(times_s[::2])))
+    numbers = range(0, len(times_s), _ROOM_EVERY)
+    of_room = [shown[number] for number in numbers]
+    room.set_known(*clip_background(of_room, np.array([times_s[number] for number in numbers])))
     return room
 
 
