@@ -1,5 +1,6 @@
 """Rooms in which things are moved and nobody is: who is found there is a ghost."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -7,8 +8,8 @@ import msgspec
 import numpy as np
 
 from mocapd.calibration.calibration_record import Calibration
-from mocapd.sim.renderer import camera_renderers
-from mocapd.sim.scenario import Scenario, Thing
+from mocapd.sim.renderer import CameraRenderer, Set, figure_of, furnished_set
+from mocapd.sim.scenario import Thing
 from mocapd.sim.setup import setup_of
 from mocapd.sim.world import World
 from mocapd.types import Bytes, Frame, FrameSet
@@ -47,28 +48,32 @@ def filmed(thing: MovedThing) -> tuple[Calibration, list[FrameSet]]:
     scenario = scenario_of(thing.name, thing.rig, 20 + THINGS.index(thing))
     small = [msgspec.structs.replace(one, size_px=(320, 240)) for one in scenario.cameras]
     scenario = msgspec.structs.replace(scenario, cameras=small)
-    empty = _pictures(scenario, 0)
-    renderers = camera_renderers(World(scenario))
-    known = calibration_of_setup(setup_of(scenario, renderers))
-    shown = [empty] * N_EMPTY
+    world = World(scenario)
+    figures = [figure_of(world)]
+
+    def seeing(stage: Set) -> list[CameraRenderer]:
+        cameras = range(len(scenario.cameras))
+        return [CameraRenderer(world, figures, stage, i, samples=1) for i in cameras]
+
+    before = seeing(furnished_set(scenario))
+    known = calibration_of_setup(setup_of(scenario, before))
+    levels = np.ones(len(scenario.lights))
+
+    def pictures(renderers: Sequence[CameraRenderer], noise: int) -> dict[str, Bytes]:
+        return {one.camera.name: one.picture(None, levels, noise_key=noise) for one in renderers}
+
+    shown = [pictures(before, 0)] * N_EMPTY
     for k in range(N_MOVED // STAYS):
         x_m = 0.5 * _WAY_M * np.sin(2.0 * np.pi * k / 6.0)
         moved = Thing(
             kind=thing.kind, base_m=(float(x_m), 0.0, 0.1), size_m=thing.size_m, yaw_deg=12.0 * k, srgb=thing.srgb
         )  # fmt: skip
         room = msgspec.structs.replace(scenario.room, things=(*scenario.room.things, moved))
-        shown += [_pictures(msgspec.structs.replace(scenario, room=room), k + 1)] * STAYS
+        stage = furnished_set(msgspec.structs.replace(scenario, room=room))
+        shown += [pictures(seeing(stage), k + 1)] * STAYS
     sets = []
-    for k, pictures in enumerate(shown):
+    for k, seen in enumerate(shown):
         t_ns = _START_NS + k * _PERIOD_NS
-        frames = {name: Frame(name, k, t_ns, pixels) for name, pixels in pictures.items()}
+        frames = {name: Frame(name, k, t_ns, pixels) for name, pixels in seen.items()}
         sets.append(FrameSet(t_ns, frames, 0))
     return known, sets
-
-
-def _pictures(scenario: Scenario, noise: int) -> dict[str, Bytes]:
-    levels = np.ones(len(scenario.lights))
-    return {
-        one.camera.name: one.picture(None, levels, noise_key=noise)
-        for one in camera_renderers(World(scenario), samples=1)
-    }
