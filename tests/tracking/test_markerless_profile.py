@@ -44,9 +44,10 @@ def is_live(track: Track) -> bool:
     return track.body.tracking is Tracking.LIVE
 
 
-def test_somebody_who_walks_in_is_followed_from_head_to_foot(
+def test_somebody_who_walks_in_is_followed_from_head_to_foot_and_lost_on_leaving(
     film: PlainFilm, tracker: Stepping
 ) -> None:
+    """Nothing of them stays behind."""
     tracks = run(tracker, film.frames)
     assert all(t.body.tracking is Tracking.LOST for t in tracks[:N_EMPTY])
     live = [i for i, t in enumerate(tracks) if is_live(t)]
@@ -58,6 +59,9 @@ def test_somebody_who_walks_in_is_followed_from_head_to_foot(
     assert np.median(away[:, ARMS]) < 0.10
     assert tracks[-1].quality > 0.6
     assert np.median(tracks[-1].body.confidence[LEGS]) > 0.3
+    gone = run(tracker, film.empty)
+    assert all(t.body.tracking is Tracking.LOST for t in gone[20:])
+    assert not any(t.body.tracking is Tracking.LIVE for t in gone[2:])
 
 
 def test_on_a_slow_machine_a_look_goes_on_over_some_frames(film: PlainFilm) -> None:
@@ -95,13 +99,6 @@ def test_a_look_that_takes_seconds_does_not_throw_away_whom_it_finds(film: Plain
     moves = cycle(film.frames[N_EMPTY:] + film.frames[:N_EMPTY:-1])
     assert any(shown(next(moves)) is Tracking.LIVE for _ in range(1000))
     assert {shown(next(moves)) for _ in range(20)} == {Tracking.LIVE}
-
-
-def test_who_leaves_is_lost_and_nothing_stays_behind(film: PlainFilm, tracker: Stepping) -> None:
-    assert run(tracker, film.frames)[-1].body.tracking is Tracking.LIVE
-    gone = run(tracker, film.empty)
-    assert all(t.body.tracking is Tracking.LOST for t in gone[20:])
-    assert not any(t.body.tracking is Tracking.LIVE for t in gone[2:])
 
 
 def test_a_camera_that_is_unplugged_leaves_the_other(film: PlainFilm, tracker: Stepping) -> None:
