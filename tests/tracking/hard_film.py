@@ -64,7 +64,7 @@ class HardFilm:
 
 @kept
 def hard_film(scene: str) -> HardFilm:
-    """Two cameras of 320x240 whose views cross, in steady light; 90 frames of one of SCENES."""
+    """Two cameras of 320x240 whose views cross, in steady light; one of SCENES until all has moved that moves."""
     table: dict[str, Any] = small.table()
     for camera, x in zip(table["cameras"], (-0.06, 0.06), strict=True):
         camera |= {"size_px": [320, 240], "dropped": 0.0, "clock_offset_s": 0.0}
@@ -85,7 +85,7 @@ def hard_film(scene: str) -> HardFilm:
     world = World(scenario)
     renderers = camera_renderers(world)
     frames, joints_m = [], []
-    for k in range(90):
+    for k in range(_LONGER.get(scene, _FRAMES)):
         t_ns = START_NS + k * PERIOD_NS
         shown = {r.camera.name: Frame(r.camera.name, k, t_ns, r.frame(k)) for r in renderers}
         frames.append(FrameSet(t_ns, shown, 0))
@@ -94,6 +94,7 @@ def hard_film(scene: str) -> HardFilm:
     return HardFilm(calibration_of_setup(setup_of(scenario, renderers)), frames, joints_m)
 
 
+_FRAMES, _LONGER = 75, {"passer_by": 90, "turns_away": 90}
 CLOSE_PAIR = "close_pair"  # 12 cm apart, straight ahead
 SCENES: dict[str, dict[str, Any]] = {
     "television": {"person_appears_s": 4.0, "others": [TELEVISION]},

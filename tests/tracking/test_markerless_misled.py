@@ -66,8 +66,8 @@ def test_a_minute_without_a_face_changes_nothing() -> None:
     there = film.joints_m[-1]
     assert there is not None
     sways = [*range(70, 90), *range(88, 70, -1)]
-    for k in range(300):
-        t_ns = film.frames[-1].t_ns + nanoseconds(0.2 * (k + 1))
+    for k in range(200):
+        t_ns = film.frames[-1].t_ns + nanoseconds(0.3 * (k + 1))
         track = tracker.step(_later(film.frames[sways[k % len(sways)]], t_ns))
         assert track.body.tracking is Tracking.LIVE
         assert track.body.joints_m is not None
@@ -78,7 +78,7 @@ def test_a_close_pair_that_has_changed_places_is_told_by_the_room_and_harms_noth
     film = hard_film(CLOSE_PAIR)
     assert hips_off_m(film, run(film, markerless_tracker)).max() < 0.25
     exchanged = replace(film, frames=[_exchanged(one) for one in film.frames])
-    tracks = run(exchanged, markerless_tracker)
+    tracks = run(replace(exchanged, frames=exchanged.frames[:60]), markerless_tracker)
     assert all(one.body.joints_m is None or np.isfinite(one.body.joints_m).all() for one in tracks)
     rig = film.known.rig
     assert rig is not None
