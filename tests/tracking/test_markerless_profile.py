@@ -77,6 +77,24 @@ def test_on_a_slow_machine_a_look_goes_on_over_some_frames(film: PlainFilm) -> N
     assert np.median(away) < 0.08
 
 
+@pytest.mark.parametrize("gone", ["left", "right"])
+def test_a_look_that_goes_on_without_a_camera_looks_in_the_other(
+    film: PlainFilm, gone: str
+) -> None:
+    slow = Stepping(
+        markerless_tracker(film.known, now_ns=count(step=1_000_000_000).__next__),
+        wearer_shape(film.known),
+    )
+    tracks = run(slow, film.frames[:N_EMPTY])
+    for k, one in enumerate(film.frames[N_EMPTY:]):
+        shown = dict(one.frames)
+        if k % 4 == 3 and not is_live(tracks[-1]):
+            del shown[gone]
+        tracks.append(slow.step(replace(one, frames=shown)))
+    assert is_live(tracks[-1])
+    assert np.median(off_m(tracks[-1], film.joints_m[-1])) < 0.08
+
+
 def test_a_look_that_takes_seconds_does_not_throw_away_whom_it_finds(film: PlainFilm) -> None:
     """Beside programs that leave it little, the next picture is newer than a track lasts without evidence."""
     t_ns, looked = film.frames[0].t_ns, False

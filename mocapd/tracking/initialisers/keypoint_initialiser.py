@@ -129,14 +129,16 @@ class KeypointInitialiser:
         factors: Floats,
         information: Floats,
     ) -> KeypointCandidate | None:
-        """A pose about middle_m (3,) for these blobs; None if the network is unsure of the keypoints or sees no trunk."""
+        """A pose about middle_m (3,) for these blobs, of the cameras that are present now; None if the network is unsure of
+        the keypoints or sees no trunk."""
         p, fitter = self._params, self._silhouettes
+        seen_by = [i for i in person.blobs if i in self._views.present]
         state = _upright_about(fitter, middle_m, factors, information)
         hips_m = state.root_m
         for _ in range(p.looks):
             detect = self._joints.detector(fitter, state, self._views)
-            terms = self._joints.term(fitter.model, map(detect, person.blobs))
-            if not terms or len(terms[0].rays) < len(person.blobs):
+            terms = self._joints.term(fitter.model, map(detect, seen_by))
+            if not terms or len(terms[0].rays) < len(seen_by):
                 return None
             joints = terms[0]
             if max(joints.median_spreads_m(p.least_joints)) > p.hopeless_m:

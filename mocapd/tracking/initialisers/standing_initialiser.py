@@ -164,8 +164,8 @@ def is_upright(fitter: Fitter, fit: Fit) -> bool:
 
 
 def views_of(person: PersonCandidate, offsets_s: Mapping[int, float]) -> tuple[View, ...]:
-    """The candidate's blobs as views of a silhouette fit. offsets_s: each camera's time offset from the frame set, by
-    index."""
+    """The candidate's blobs as views of a silhouette fit, but for cameras that are absent now: a search may have begun with
+    them. offsets_s: time offsets of those present from the frame set, by index."""
     return tuple(
         View(
             i,
@@ -175,6 +175,7 @@ def views_of(person: PersonCandidate, offsets_s: Mapping[int, float]) -> tuple[V
             offsets_s[i],
         )
         for i, blob in person.blobs.items()
+        if i in offsets_s
     )
 
 
