@@ -10,7 +10,6 @@ import pytest
 import mocapd
 from mocapd.app.libraries import use_cache_dir
 from mocapd.errors import CannotCreateError, PermissionDeniedError
-from tests.conftest import ROOT
 
 
 @pytest.fixture(autouse=True)
@@ -54,18 +53,26 @@ def test_a_path_that_cannot_be_is_named(tmp_path: Path) -> None:
     ],
     ids=["configuration", "run", "status"],
 )
-def test_no_kernel_is_imported_before_it_is_known_where_its_code_is_kept(read: str) -> None:
+def test_no_kernel_is_imported_before_it_is_known_where_its_code_is_kept(
+    read: str, clean_env: dict[str, str]
+) -> None:
     """It would be compiled anew, beside what was prepared."""
-    words = [sys.executable, "-c", f"import sys; {read}; print('numba' in sys.modules)"]
-    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True)
-    assert done.stdout == "False\n"
+    told = run_code(f"import sys; {read}; print('numba' in sys.modules)", clean_env)
+    assert told == ("False\n", "")
 
 
-def test_the_kernels_own_places_are_known_to_numba_whatever_imports_it() -> None:
+def test_the_kernels_own_places_are_known_to_numba_whatever_imports_it(
+    clean_env: dict[str, str],
+) -> None:
     code = (
         "import mocapd.body.posing_kernels as kernels; print(kernels.retract._cache._impl.locator)"
     )
+    assert "KernelLocator" in run_code(code, clean_env)[0]
+
+
+def run_code(code: str, env: dict[str, str]) -> tuple[str, str]:
+    """What it prints in a process of its own, to both streams."""
     done = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+        [sys.executable, "-c", code], env=env, capture_output=True, text=True, check=False
     )
-    assert "KernelLocator" in done.stdout
+    return done.stdout, done.stderr

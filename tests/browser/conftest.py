@@ -76,12 +76,13 @@ class Served:
         pytest.fail(f"no URL was printed:\n{''.join(self.log)}")
 
     def stop(self) -> int:
-        """As systemd ends it; its exit code."""
+        """As systemd ends it; its exit code. Prints its log, which a test that fails shows."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
         assert self.process.stdout is not None
         self.log.extend(self.process.stdout)
         self.process.wait(timeout=120)
+        print("".join(self.log))
         return self.process.returncode
 
 
