@@ -2,8 +2,8 @@
 
 import os
 
-# numba reads this when it is imported, which nothing does but this package. It takes the first locator that accepts a
-# function: the kernels' own, then its default ones.
+# numba reads this when it is imported, so whoever runs kernels imports this package first. It takes the first locator that
+# accepts a function: the kernels' own, then its default ones.
 os.environ["NUMBA_CACHE_LOCATOR_CLASSES"] = (
     "mocapd.kernels.locator.KernelLocator,UserProvidedCacheLocator,InTreeCacheLocator,UserWideCacheLocator,"
     "IPythonCacheLocator,ZipCacheLocator"

@@ -132,13 +132,13 @@ class KeypointInitialiser:
         """A pose about middle_m (3,) for these blobs, of the cameras that are present now; None if the network is unsure of
         the keypoints or sees no trunk."""
         p, fitter = self._params, self._silhouettes
-        seen_by = [i for i in person.blobs if i in self._views.present]
+        views = views_of(person, self._views.present)
         state = _upright_about(fitter, middle_m, factors, information)
         hips_m = state.root_m
         for _ in range(p.looks):
             detect = self._joints.detector(fitter, state, self._views)
-            terms = self._joints.term(fitter.model, map(detect, seen_by))
-            if not terms or len(terms[0].rays) < len(seen_by):
+            terms = self._joints.term(fitter.model, map(detect, person.blobs))
+            if not terms or len(terms[0].rays) < len(views):
                 return None
             joints = terms[0]
             if max(joints.median_spreads_m(p.least_joints)) > p.hopeless_m:
@@ -151,8 +151,7 @@ class KeypointInitialiser:
             state = fitter.fit(posed, (), self._start.loose_s, p.iterations, terms=held).state
             hips_m = state.root_m
         fit = fit_to_blobs(
-            fitter, views_of(person, self._views.present), state, self._start.iterations, (self._floor, joints),
-            self._start,
+            fitter, views, state, self._start.iterations, (self._floor, joints), self._start,
         )  # fmt: skip
         joints_m = fitter.joints(fit.state)[0]
         has_place = np.isfinite(places_m[:, 0])

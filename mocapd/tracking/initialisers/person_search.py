@@ -286,9 +286,7 @@ class PersonSearch:
         heatmaps of head and neck are as blurred as for furniture in all pictures that show enough keypoints."""
         p, fitter = self._params, self._silhouettes
         detect = self._joints.detector(fitter, fit.state, self._views)
-        # the search may have begun with a camera that is absent now
-        seen_by = [i for i in candidate.person.blobs if i in self._views.present]
-        terms = self._joints.term(fitter.model, map(detect, seen_by))
+        terms = self._joints.term(fitter.model, map(detect, candidate.person.blobs))
         spreads_m = [one for term in terms for one in term.head_spreads_m(self._least_joints)]
         finite_m = [spread_m for spread_m in spreads_m if spread_m < np.inf]
         if not finite_m:

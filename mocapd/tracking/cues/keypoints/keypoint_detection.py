@@ -89,9 +89,9 @@ class KeypointDetectors:
         cameras: CameraViews,
         index: int,
     ) -> CameraKeypoints | None:
-        """Detects the keypoints of a body in one picture; None too near to the camera. joints: its centres (J,3) and
-        rotations (J,4)."""
-        if not self._networks:
+        """Detects the keypoints of a body in one picture; None too near to the camera, or without its picture: a search may
+        have begun with a camera that is absent now. joints: its centres (J,3) and rotations (J,4)."""
+        if not self._networks or index not in cameras.present:
             return None
         late_s, there_m = cameras.present[index], joints[0]
         if late_s:
