@@ -20,11 +20,9 @@ def newest(pictures: tuple[Bytes, Bytes], at_s: float) -> dict[str, Frame]:
 def test_points_of_the_room_show_a_swap_and_its_end() -> None:
     cameras, (a, b) = room("close")
     swapped = SwappedCameras(cameras)
-    swapped.compare_points(newest((b, a), 0.0))
-    assert not swapped.is_swapped(A)  # looking takes time, which the first body needs
-    swapped.compare_points(newest((b, a), 3.0))
+    swapped.compare_points(newest((b, a), 1.0))
     assert (swapped.partner(A), swapped.partner(B)) == (B, A)
-    swapped.compare_points(newest((a, b), 4.0))
+    swapped.compare_points(newest((a, b), 2.0))
     assert swapped.is_swapped(A)  # a pair is due again only after some time
     swapped.compare_points(newest((a, b), 40.0))
     assert not swapped.is_swapped(A)
@@ -36,7 +34,7 @@ def test_cameras_whose_points_say_nothing_are_not_looked_at_for_ever() -> None:
     cameras, (a, b) = room("close")
     swapped = SwappedCameras((cameras[0], replace(cameras[1], name="right")))
     dark = np.zeros_like(a)
-    for k in range(21):
+    for k in range(20):
         swapped.compare_points(newest((a, dark), 11.0 * k))
     swapped.compare_points(newest((b, a), 1000.0))
     swapped.compare_points({})
@@ -65,16 +63,14 @@ def test_the_views_of_people_count_until_another_comparison_or_the_room_contradi
     swapped.take_views([])
     assert not swapped.is_swapped(A)
     swapped.take_views([NAMES])
-    for at_s in (0.0, 3.0):
-        swapped.compare_points(newest((a, b), at_s))
+    swapped.compare_points(newest((a, b), 1.0))
     assert not swapped.is_swapped(A)
 
 
 def test_people_take_nothing_back_that_the_room_shows() -> None:
     cameras, (a, b) = room("close")
     swapped = SwappedCameras(cameras)
-    for at_s in (0.0, 3.0):
-        swapped.compare_points(newest((b, a), at_s))
+    swapped.compare_points(newest((b, a), 1.0))
     swapped.take_views([NAMES])
     swapped.take_views([])
     assert swapped.is_swapped(A)

@@ -138,7 +138,7 @@ def test_identical_webcams_that_were_swapped_at_the_first_start_take_part_once_t
     cameras, (a, b) = room("close")
     both, taken = identical(cameras, tmp_path)
     watch, names = both.watch, both.names
-    assert both.show(b, a, times=4) == {Mounting.SWAPPED}
+    assert both.show(b, a, times=3) == {Mounting.SWAPPED}
     for name in names:
         watch.went(name)
     assert both.show(a, b, times=14) == {Mounting.STEADY}

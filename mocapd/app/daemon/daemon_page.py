@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from mocapd.wizard.hosts.daemon_host import DaemonHost
 
 FIRST_BODY_TIMEOUT_S = 5.0  # the page waits so long for the first body, which it would delay [s]
-AFTER_BODY_S = 1.0  # and from there until the first legs are found [s]
 HANG_UP_S = 0.5  # for browsers, at the end [s]
 SHOWN_S = 2.0  # a finished setup stays visible so long [s]
 
@@ -26,16 +25,14 @@ class DaemonPage:
         self._service = service
         self._host: DaemonHost | None = None
         self._server: WebServer | None = None
-        self._due_s = time.monotonic() + FIRST_BODY_TIMEOUT_S
-        self._has_body = False
+        self._began_s = time.monotonic()
         self._saved_s: float | None = None
 
     def on_tick(self, snapshot: "Snapshot") -> None:
         """Called several times a second."""
         if self._host is None:
-            if snapshot.metrics.published > 0 and not self._has_body:
-                self._has_body, self._due_s = True, time.monotonic() + AFTER_BODY_S
-            if time.monotonic() > self._due_s:
+            waited_s = time.monotonic() - self._began_s
+            if snapshot.metrics.published > 0 or waited_s > FIRST_BODY_TIMEOUT_S:
                 self._begin()
             return
         self._host.beat()

@@ -1,7 +1,7 @@
 """Decides which cameras show another one's view. All such decisions are here, from three kinds of evidence.
 
 - Points of the room in both pictures contradict the calibration, and fit it with the cameras exchanged
-  (`changed_places.py`): some seconds after the first pictures, without any memory.
+  (`changed_places.py`): from the first pictures on, without any memory.
 - A camera shows the room that another one remembers (`landmark_memory.py`): also where the two have no common view.
   Of different cameras each must show the other's room; of identical ones, which are easily confused, one is enough.
 - The views of people (`consistency/`) fit: where the room gives no evidence.
@@ -17,29 +17,25 @@ from mocapd.calibrate.bump.changed_places import PlacesParams, PlacesVerdict, pl
 from mocapd.clock import nanoseconds
 from mocapd.types import Camera, Frame
 
-_FIRST_S = 3.0  # from a pair's first pictures to its first comparison: the first second of tracking is the busiest
 _AGAIN_S = 10.0  # between two comparisons of a pair: each takes a fifth of a second
 _LOOKS = 6  # at a pair without matching points: it has too little common view
 
 
 @dataclass(slots=True, eq=False)
 class _Pair:
-    """State of two cameras; looks: comparisons of their points; next_ns: time of the next one, None before the first
-    pictures."""
+    """State of two cameras; looks: comparisons of their points; next_ns: time of the next one."""
 
     cameras: tuple[Camera, Camera]
     places: PlacesVerdict = PlacesVerdict.UNKNOWN
     is_by_people: bool = False  # evidence of people that they changed places
     looks: int = 0
-    next_ns: int | None = None
+    next_ns: int = 0
     names: tuple[str, str] = field(init=False)
 
     def __post_init__(self) -> None:
         self.names = self.cameras[0].name, self.cameras[1].name
 
     def is_due(self, t_ns: int) -> bool:
-        if self.next_ns is None:
-            self.next_ns = t_ns + nanoseconds(_FIRST_S)
         if t_ns < self.next_ns or self.places is PlacesVerdict.RIGHT:
             return False
         return self.places is PlacesVerdict.CHANGED or self.looks < _LOOKS
@@ -94,7 +90,7 @@ class SwappedCameras:
         for pair in self._pairs:
             if camera in pair.names and pair.places is PlacesVerdict.CHANGED:
                 pair.places, pair.is_by_people = PlacesVerdict.UNKNOWN, False
-                pair.looks, pair.next_ns = 0, 0
+                pair.looks = pair.next_ns = 0
 
     def compare_points(self, newest: Mapping[str, Frame]) -> None:
         """Evidence of the room's points, of one due pair at most; newest: pictures, each of its camera's size."""
