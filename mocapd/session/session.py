@@ -104,7 +104,7 @@ def plan_session(config: Config) -> SessionPlan:
 
 
 def open_planned(plan: SessionPlan, progress: Progress, is_beginning: bool = False) -> Session:
-    """The second part of `open_session`; is_beginning: see `open_origin`."""
+    """The second part of `open_session`; is_beginning: the parts of film and caches that are ready soonest suffice."""
     cache_dir, tracker = plan.config.cache_dir, plan.config.tracker
     calibration, rig_source = plan.calibration, plan.rig_source
     if plan.assumes_rig:
@@ -116,7 +116,9 @@ def open_planned(plan: SessionPlan, progress: Progress, is_beginning: bool = Fal
         rig_source = rig_source or origin.rig_source
     reduced_by = reductions(tracker.name, calibration.rig)
     inputs = camera_inputs(plan.cameras, calibration.rig, origin, reduced_by=reduced_by)
-    resources = cache_resources(cache_dir, progress, tracker.tracking)
+    resources = replace(
+        cache_resources(cache_dir, progress, tracker.tracking), is_beginning=is_beginning
+    )
     rehearsal = partial(progress, "preparing the tracker")
     assumed = calibration.assuming(tracker.stature_m)
     ready = ready_tracker(tracker.name, assumed, resources, rehearsal)

@@ -61,9 +61,10 @@ def ready_tracker(
     return ReadyTracker(tracker, shape)
 
 
-def make_caches(name: str, cache_dir: Path, progress: Progress) -> None:
-    """Makes missing caches of this tracker in the cache folder."""
-    with _with_pool(cache_resources(cache_dir, progress)) as pooled:
+def make_caches(name: str, cache_dir: Path, progress: Progress, is_beginning: bool = False) -> None:
+    """Makes missing caches of this tracker in the cache folder; is_beginning: the part that is made soonest."""
+    resources = replace(cache_resources(cache_dir, progress), is_beginning=is_beginning)
+    with _with_pool(resources) as pooled:
         registry.make_caches(name, pooled)
 
 

@@ -30,7 +30,7 @@ def _quiet(_: object) -> None:
 class Resources:
     """Resources of any tracker.
 
-    cache_dir: folder of the pose database; progress(0..1): called while it is built; map_chunks: `map`, or that of a
+    cache_dir: folder of the pose database; is_beginning: the part of it that is made soonest suffices; progress(0..1): called while it is built; map_chunks: `map`, or that of a
     thread pool; warn: gets a line about a rebuilt or unwritable cache, or about a cue that is left out; tracking: when a
     person counts as lost, None for the defaults; params: a tracker's parameters by its name, for studies; each: map over
     a tracker's cameras; now_ns: the clock for spreading long work over several frame sets; for recordings it stands
@@ -45,6 +45,7 @@ class Resources:
     params: Mapping[str, Any] = field(default_factory=dict)
     each: Each = in_turn
     now_ns: Callable[[], int] = frozen_clock
+    is_beginning: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,12 +111,11 @@ def _build_canned(_calibration: Calibration, params: Any, _resources: Resources)
 
 
 def _database(resources: Resources) -> "PoseDatabase":
-    from mocapd.shirt.pose_database.database_file import load_or_build
+    from mocapd.shirt.pose_database.database_file import load_or_build, load_or_build_beginning
 
     stale = not is_absent(resources.cache_dir / CACHE_NAME)
-    loaded = load_or_build(
-        resources.cache_dir, progress=resources.progress, map_chunks=resources.map_chunks
-    )
+    load = load_or_build_beginning if resources.is_beginning else load_or_build
+    loaded = load(resources.cache_dir, progress=resources.progress, map_chunks=resources.map_chunks)
     if loaded.built and stale:
         resources.warn(f"{loaded.reason}, so it was rebuilt")
     if loaded.warning:

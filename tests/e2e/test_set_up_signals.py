@@ -13,7 +13,7 @@ def test_sigterm_during_the_first_set_up_ends_it_in_two_seconds(
 ) -> None:
     empty = clean_env | {"XDG_CACHE_HOME": str(tmp_path / "cache")}
     # of what two processes make first
-    locks = {"pose_database.lock", "sim-living_room-beginning.lock"}
+    locks = {"pose_database-beginning.lock", "sim-living_room-beginning.lock"}
     with start(empty, "demo") as process:
         while not locks <= {path.name for path in (tmp_path / "cache").rglob("*.lock")}:
             assert process.poll() is None, "it ended before it made anything"

@@ -17,7 +17,7 @@ from mocapd.errors import CannotCreateError
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project
 from mocapd.shirt.pose_database import database_file
-from mocapd.shirt.pose_database.cache_name import CACHE_NAME
+from mocapd.shirt.pose_database.cache_name import BEGINNING_NAME, CACHE_NAME
 from mocapd.shirt.pose_database.database import (
     DatabaseParams,
     PoseDatabase,
@@ -28,6 +28,7 @@ from mocapd.shirt.pose_database.database import (
 from mocapd.shirt.pose_database.database_file import (
     LOCK_NAME,
     load_or_build,
+    load_or_build_beginning,
     write_database,
 )
 from mocapd.shirt.pose_database.idmap_crop_kernels import crop_id_map
@@ -146,6 +147,19 @@ def test_the_file_gives_back_what_was_written(database: PoseDatabase, tmp_path: 
     for a, b in zip(loaded.database.nearest(query), database.nearest(query), strict=True):
         np.testing.assert_array_equal(a, b)
     assert [path.name for path in tmp_path.iterdir()] == [CACHE_NAME]
+
+
+def test_a_twentieth_of_the_poses_serves_until_the_whole_is_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tiny = DatabaseParams(count=60, cells=4, dimensions=8)
+    monkeypatch.setattr(database_file, "BEGINNING", replace(tiny, count=20))
+    assert len(load_or_build_beginning(tmp_path).database) == 20
+    assert not load_or_build_beginning(tmp_path).built
+    monkeypatch.setattr(database_file, "DatabaseParams", lambda: tiny)
+    assert len(load_or_build(tmp_path).database) == 60
+    assert len(load_or_build_beginning(tmp_path).database) == 60
+    assert BEGINNING_NAME not in {path.name for path in tmp_path.iterdir()}
 
 
 @pytest.mark.parametrize("damage", ["version", "cut", "header", "flipped", "empty"])

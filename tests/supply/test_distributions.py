@@ -123,7 +123,7 @@ def test_installed_the_demo_begins_and_ends_well(
         text=True,
     )
     with process:
-        while not {"pose_database.lock", "sim-living_room-beginning.lock"} & {
+        while not {"pose_database-beginning.lock", "sim-living_room-beginning.lock"} & {
             p.name for p in cache.rglob("*.lock")
         }:
             if process.poll() is not None:

@@ -20,11 +20,9 @@ _STAGES = {
 }
 _LOOP = 50_000
 TABLE_LOOP_S = 0.0028  # `loop_s` there
-_DATABASE_S, _FILM_S, _BEGINNING_S = (
-    20.0,
-    11.0,
-    3.0,
-)  # on the table's machine, without their kernels
+# of the whole and of its beginning, on the table's machine, without their kernels
+_DATABASE_S, _DATABASE_BEGINNING_S = 20.0, 1.5
+_FILM_S, _FILM_BEGINNING_S = 11.0, 3.0
 
 
 def loop_s() -> float:
@@ -66,25 +64,27 @@ def first_start_tasks(config: "Config") -> list[Task]:
     has_film = any(is_simulated(camera.source) for camera in config.camera)
     has_database = bool(TRACKERS[name].caches) and not has_caches(name, config.cache_dir)
     stages += ["film"] * has_film + ["database"] * has_database
-    first = {"shirt", "film", "database"} if begins_early(config) else set(stages)
+    is_early = begins_early(config)
+    first = {"shirt", "film", "database"} if is_early else set(stages)
     rows = rows_of(read_table(), stages)
     tasks = [
         Task(COMPILING, row.seconds, partial(_compile, row), after, not row.stages & first)
         for row, after in zip(rows, callees_of_rows(rows), strict=True)
     ]
-    if has_database:
-        making = partial(_make_database, config)
-        tasks.append(
-            Task(DATABASE, _DATABASE_S, making, _rows_of_stage(rows, "database"), reports=True)
-        )
-    if has_film:
-        needed = _rows_of_stage(rows, "film")
-        if begins_early(config):
-            beginning = partial(_make_film, config, is_beginning=True)
-            tasks.append(Task(FILM, _BEGINNING_S, beginning, needed, reports=True))
-            needed |= {len(tasks) - 1}
-        whole = partial(_make_film, config)
-        tasks.append(Task(FILM, _FILM_S, whole, needed, begins_early(config), reports=True))
+    making = (
+        (DATABASE, has_database, _DATABASE_BEGINNING_S, _DATABASE_S, _make_database),
+        (FILM, has_film, _FILM_BEGINNING_S, _FILM_S, _make_film),
+    )
+    for what, is_missing, beginning_s, whole_s, make in making:
+        if not is_missing:
+            continue
+        stage = "database" if what == DATABASE else "film"
+        after = _rows_of_stage(rows, stage)
+        if is_early:
+            beginning = partial(make, config, is_beginning=True)
+            tasks.append(Task(what, beginning_s, beginning, after, reports=True))
+            after |= {len(tasks) - 1}
+        tasks.append(Task(what, whole_s, partial(make, config), after, is_early, reports=True))
     return tasks
 
 
@@ -100,10 +100,11 @@ def _compile(row: KernelRow, _report: Share) -> None:
         locator.remove_old(time.time())
 
 
-def _make_database(config: "Config", report: Share) -> None:
+def _make_database(config: "Config", report: Share, is_beginning: bool = False) -> None:
     from mocapd.session.tracker_setup import make_caches
 
-    make_caches(config.tracker.name, config.cache_dir, lambda _, done, of: report(done / of))
+    name, cache_dir = config.tracker.name, config.cache_dir
+    make_caches(name, cache_dir, lambda _, done, of: report(done / of), is_beginning)
 
 
 def _make_film(config: "Config", report: Share, is_beginning: bool = False) -> None:
