@@ -30,11 +30,11 @@ def _quiet(_: object) -> None:
 class Resources:
     """Resources of any tracker.
 
-    cache_dir: folder of the pose database; is_beginning: the part of it that is made soonest suffices; progress(0..1): called while it is built; map_chunks: `map`, or that of a
-    thread pool; warn: gets a line about a rebuilt or unwritable cache, or about a cue that is left out; tracking: when a
-    person counts as lost, None for the defaults; params: a tracker's parameters by its name, for studies; each: map over
-    a tracker's cameras; now_ns: the clock for spreading long work over several frame sets; for recordings it stands
-    still, because they wait.
+    cache_dir: folder of the pose database; is_beginning: the part of it that is made soonest suffices; progress(0..1):
+    called while it is built; map_chunks: `map`, or that of a thread pool; warn: gets a line about a rebuilt or
+    unwritable cache, or about a cue that is left out; tracking: when a person counts as lost, None for the defaults;
+    params: a tracker's parameters by its name, for studies; each: map over a tracker's cameras; now_ns: the clock for
+    spreading long work over several frame sets; for recordings it stands still, because they wait.
     """
 
     cache_dir: Path = field(default_factory=Path)
