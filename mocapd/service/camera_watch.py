@@ -7,7 +7,7 @@ people. Each trouble is logged once and becomes a notice of its cameras.
 
 import logging
 import threading
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from mocapd.calibrate.bump.bump_watch import BumpWatch, Mounting
 from mocapd.calibrate.bump.landmark_memory import LandmarkMemory, is_other_room
@@ -20,17 +20,19 @@ from mocapd.pipeline.frame_hub import TakesFrames
 from mocapd.pipeline.idle_moments import IdleMoments
 from mocapd.service.identical_cameras import IdenticalCameras, Trust, identical_groups
 from mocapd.service.room_memory import RoomMemory
+from mocapd.service.thread_priority import lower_priority
 from mocapd.service.view_watch import ViewWatch
 from mocapd.types import Bytes, Frame, Rig
 
 _log = logging.getLogger(__name__)
 
+_LOOK_EVERY_S = 1.0
 _SAVE_NS = 600 * NS_PER_S  # interval of saving the rooms of identical webcams for the next start
 
 
 class CameraWatch:
-    """Filters frames between a hub and their consumers. Capture threads call `put` and `went`, one other thread calls
-    `look`, the owner calls `start` and `stop`; the rest is thread-safe. A new calibration needs a new instance."""
+    """Filters frames between a hub and their consumers. Capture threads call `put` and `went`, the owner calls `start` and
+    `stop`; the rest is thread-safe. A thread of low priority runs the checks. A new calibration needs a new instance."""
 
     def __init__(
         self,
@@ -40,9 +42,10 @@ class CameraWatch:
         rooms: RoomMemory | None = None,
         stature_m: float | None = None,
         idle: IdleMoments | None = None,
+        on_death: Callable[[BaseException], None] | None = None,
     ) -> None:
         """rig: None disables all checks; onwards: receives the admitted frames; rooms: memory of earlier runs;
-        idle: of the pipeline."""
+        idle: of the pipeline; on_death: receives an unexpected error of the thread."""
         sources = list(sources)
         calibrated = {camera.name: camera for camera in rig.cameras} if rig else {}
         self._cameras = {
@@ -57,6 +60,7 @@ class CameraWatch:
         earlier = rooms.read(self._cameras) if rooms is not None and groups else {}
         earlier = {name: earlier[name] for group in groups for name in group if earlier.get(name)}
         self._onwards, self._rooms, self._idle = onwards, rooms, idle
+        self._on_death = on_death
         self._saved_ns: int | None = None
         self._memories = {
             name: LandmarkMemory(camera, earlier.get(name, ()))
@@ -69,17 +73,23 @@ class CameraWatch:
         self._looked_at: dict[str, Frame] = {}
         self._misplaced: set[str] = set()
         self._warned: set[tuple[str, str | None]] = set()
+        self._stopping = threading.Event()
+        # Not a daemon thread: the interpreter's end within a call of OpenCV would abort the process.
+        self._thread = threading.Thread(target=self._run, name="camera-watch")
         self._lock = threading.Lock()  # guards what follows
         self._newest: dict[str, Frame] = {}
         self._identical = IdenticalCameras(groups, earlier)
 
     def start(self) -> None:
-        """Starts comparing views; returns at once."""
+        """Starts the threads; returns at once."""
         self._views.start()
+        if self._cameras:
+            self._thread.start()
 
     def stop(self) -> None:
-        """Signals the comparison to end; never blocks."""
+        """Signals the threads to end; never blocks."""
         self._views.stop()
+        self._stopping.set()
 
     def put(self, frame: Frame) -> None:
         """Takes a frame; drops it while the identity of its webcam is in doubt."""
@@ -128,9 +138,19 @@ class CameraWatch:
         """Lasting disagreement of the views of people [m]."""
         return self._views.off_m
 
+    def _run(self) -> None:
+        lower_priority()
+        try:
+            while not self._stopping.wait(_LOOK_EVERY_S):
+                self.look()
+        except BaseException as error:
+            if self._on_death is not None:
+                self._on_death(error)
+            raise
+
     def look(self) -> None:
-        """Runs the checks; call it about once a second. Takes some milliseconds per camera, in idle moments of the pipeline,
-        and in the first minute a fifth of a second per pair of cameras."""
+        """Runs the checks once. Takes some milliseconds per camera, in idle moments of the pipeline, and in the first minute
+        a fifth of a second per pair of cameras."""
         self._take_comparison()
         newest: dict[str, Frame] = {}
         for name, camera in self._cameras.items():
@@ -277,10 +297,7 @@ class CameraWatch:
         views = {name: memory.views for name, memory in memories.items()}
         if all(views.values()) and any(memory.has_begun for memory in memories.values()):
             self._saved_ns = now_ns
-            # in a thread: a disk may be slow, and the calling thread also sends the watchdog's heartbeat
-            threading.Thread(
-                target=self._rooms.write, args=(self._cameras, views), name="rooms", daemon=True
-            ).start()
+            self._rooms.write(self._cameras, views)
 
 
 def _in_order(name: str, other: str | None) -> tuple[str, str | None]:

@@ -51,8 +51,8 @@ class RunningSession:
         sources = [camera.source for camera in session.cameras]
         rooms = RoomMemory(config.state_dir)
         stature_m = session.calibration.wearer.stature_m
-        idle = IdleMoments()
-        self._cameras = CameraWatch(sources, session.rig, guard, rooms, stature_m, idle)
+        self.idle = IdleMoments()
+        self._cameras = CameraWatch(sources, session.rig, guard, rooms, stature_m, self.idle, died)
         # consumers of pictures join it
         self.hub = FrameHub(self.inputs, self._cameras, bundler=bundler)
         self._captures = [
@@ -79,7 +79,7 @@ class RunningSession:
             died,
             _absence(config, session),
             lambda: self._cameras.off_m,
-            idle,
+            self.idle,
         )
 
     def start(self) -> None:
@@ -134,10 +134,6 @@ class RunningSession:
     def detail(self) -> str:
         """Trouble of the pipeline, for users; empty without trouble."""
         return self._steps.detail
-
-    def look(self) -> None:
-        """Checks for bumped or swapped cameras; call about once a second, from one thread."""
-        self._cameras.look()
 
     def watch(self) -> None:
         """Runs the watchdogs; call at least once a second, from one thread. Raises StuckStepError."""

@@ -17,6 +17,7 @@ from mocapd.outputs.from_rig import calibration_info
 from mocapd.outputs.messages import CalibrationInfo, CameraStatus, Facing
 from mocapd.pipeline.body_hub import BodyHub
 from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.pipeline.idle_moments import IdleMoments
 from mocapd.pipeline.metrics import Metrics
 from mocapd.service.health import camera_message, gone_message, health_message
 from mocapd.service.open_outputs import OpenOutputs
@@ -123,6 +124,11 @@ class Service:
         """The hub of its cameras' frames."""
         return self._running.hub
 
+    @property
+    def idle(self) -> IdleMoments:
+        """The idle moments of the running session's pipeline."""
+        return self._running.idle
+
     def statuses(self) -> dict[str, CaptureStatus]:
         """The status of each camera, by id."""
         return self._running.statuses()
@@ -179,10 +185,9 @@ class Service:
         return _troubles(snapshot) != self._published
 
     def publish_status(self, snapshot: Snapshot) -> None:
-        """Checks the cameras and publishes health and camera status; call it about once a second."""
+        """Publishes health and camera status; call it about once a second."""
         running = self._running
         self._published = _troubles(snapshot)
-        running.look()
         self._publisher.publish_state(
             health_message(
                 self.instance,

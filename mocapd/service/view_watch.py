@@ -4,11 +4,9 @@ While it collects, for about half a minute, each frame costs its capture thread 
 low priority computes the rest, in idle moments of the pipeline. Then it pauses for minutes.
 """
 
-import os
 import threading
 from collections import deque
 from collections.abc import Callable
-from contextlib import suppress
 
 import numpy as np
 
@@ -16,13 +14,13 @@ from mocapd.calibrate.consistency.capture_check import CaptureCheck, CheckResult
 from mocapd.calibrate.consistency.person_views import WORK_PX
 from mocapd.clock import seconds
 from mocapd.pipeline.idle_moments import IdleMoments
+from mocapd.service.thread_priority import lower_priority
 from mocapd.types import Bytes, Frame, Rig
 
 _LONGEST_S = 120.0  # of collecting, when little moves
 _REST_S, _REST_WARNED_S = 900.0, 120.0  # from one comparison to the next
 _MOST_WAITING = 400  # small pictures: the thread is behind
 _PAUSE_S = 0.25
-_NICE = 15
 _SPEED_M_S = 0.5  # of joints, as people move
 
 
@@ -81,8 +79,7 @@ class ViewWatch:
         return max(self._result.off_m, _SPEED_M_S * late_s)
 
     def _run(self) -> None:
-        with suppress(OSError, AttributeError):  # of this thread only, where the system supports it
-            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE)
+        lower_priority()
         while not self._stopping.is_set():
             result = self._compare()
             if result is None:

@@ -1,6 +1,7 @@
 """A bumped camera and two that are swapped are warned of once, with what to do; and once when it is over."""
 
 import logging
+import threading
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from mocapd.capture.simulated.socket_camera import SocketCamera
 from mocapd.capture.simulated.sockets import Sockets
 from mocapd.clock import nanoseconds
 from mocapd.pipeline.frame_hub import FrameHub
+from mocapd.service import camera_watch
 from mocapd.service.camera_watch import CameraWatch
 from mocapd.service.room_memory import RoomMemory
 from mocapd.types import Bytes, Camera, Frame, Rig
@@ -18,6 +20,7 @@ from tests.calibrate.distant_scene import Room, camera, turn
 from tests.calibrate.test_changed_places import room
 from tests.capture.socket_control import SocketControl
 from tests.e2e.fake_cameras import FakeCamera
+from tests.outputs.frames import eventually
 
 
 class Watching:
@@ -155,3 +158,27 @@ def test_without_a_rig_nothing_is_known() -> None:
     nothing.watch.stop()
     assert nothing.watch.mounting("left") is Mounting.UNKNOWN
     assert (nothing.watch.off_m, nothing.watch.notice("left")) == (0.0, "")
+
+
+def test_the_checks_run_in_a_thread_of_their_own_and_its_error_ends_the_service(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """They took a fifth of a second of the main thread's time, in the first second of a stream."""
+    monkeypatch.setattr(camera_watch, "_LOOK_EVERY_S", 0.01)
+    threads, errors = list[str](), list[BaseException]()
+
+    def look(_watch: CameraWatch) -> None:
+        threads.append(threading.current_thread().name)
+        if len(threads) == 3:
+            raise ValueError
+
+    monkeypatch.setattr(CameraWatch, "look", look)
+    monkeypatch.setattr(threading, "excepthook", lambda _: None)
+    rig = Rig((camera("left"), camera("right")))
+    sources = [FakeCamera(name) for name in rig.names]
+    watch = CameraWatch(sources, rig, FrameHub(rig.names), on_death=errors.append)
+    watch.start()
+    assert eventually(lambda: bool(errors), 60.0)
+    watch.stop()
+    assert threads == ["camera-watch"] * 3
+    assert isinstance(errors[0], ValueError)

@@ -4,6 +4,7 @@ import logging
 import time
 from typing import TYPE_CHECKING
 
+from mocapd.app.daemon.patient_imports import PatientImports
 from mocapd.errors import MocapdError
 
 if TYPE_CHECKING:
@@ -75,10 +76,11 @@ class DaemonPage:
 
     def _begin(self) -> None:
         # imported here: it takes a third of a second, which would delay the first body
-        from mocapd.config.runtime_folder import runtime_folder
-        from mocapd.web.runtime_file import Place
-        from mocapd.web.server import WebServer
-        from mocapd.wizard.hosts.daemon_host import DaemonHost
+        with PatientImports(self._service.idle):
+            from mocapd.config.runtime_folder import runtime_folder
+            from mocapd.web.runtime_file import Place
+            from mocapd.web.server import WebServer
+            from mocapd.wizard.hosts.daemon_host import DaemonHost
 
         service, config = self._service, self._service.config
         self._host = DaemonHost(service)

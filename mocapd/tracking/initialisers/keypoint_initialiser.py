@@ -137,7 +137,7 @@ class KeypointInitialiser:
         hips_m = state.root_m
         for _ in range(p.looks):
             detect = self._joints.detector(fitter, state, self._views)
-            terms = self._joints.term(fitter.model, map(detect, person.blobs))
+            terms = self._joints.term(fitter.model, fitter.each(detect, person.blobs))
             if not terms or len(terms[0].rays) < len(views):
                 return None
             joints = terms[0]

@@ -286,7 +286,7 @@ class PersonSearch:
         heatmaps of head and neck are as blurred as for furniture in all pictures that show enough keypoints."""
         p, fitter = self._params, self._silhouettes
         detect = self._joints.detector(fitter, fit.state, self._views)
-        terms = self._joints.term(fitter.model, map(detect, candidate.person.blobs))
+        terms = self._joints.term(fitter.model, fitter.each(detect, candidate.person.blobs))
         spreads_m = [one for term in terms for one in term.head_spreads_m(self._least_joints)]
         finite_m = [spread_m for spread_m in spreads_m if spread_m < np.inf]
         if not finite_m:

@@ -68,11 +68,14 @@ class CameraViews:
 
     def forget_background(self, state: MotionState) -> None:
         """Clears the background under a body that was in view when the background was first taken."""
-        self.mark_body(state)
-        for i in self.present:
+
+        def forget(i: int) -> None:
+            self._mark(i, state)
             camera = self.each[i]
             camera.background.forget_body(camera.picture, camera.drawn)
-        self.update_foreground(everywhere=False)
+            camera.update_foreground(everywhere=False)
+
+        self._each(forget, self.present)
 
     @property
     def are_new(self) -> bool:
@@ -241,9 +244,12 @@ class CameraViews:
 
     def seed_background(self) -> None:
         """Takes everything outside the marked body for the background."""
-        for i in self.present:
+
+        def seed(i: int) -> None:
             camera = self.each[i]
             camera.background.seed(camera.picture, camera.body)
+
+        self._each(seed, self.present)
 
     def names(self, views: Sequence[View]) -> tuple[str, ...]:
         """Of the cameras of these views."""

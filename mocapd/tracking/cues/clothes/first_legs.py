@@ -92,7 +92,7 @@ class FirstLegs:
         pose = start
         for _ in range(p.looks):
             detect = self._terms.joints.detector(fitter, pose, cameras)
-            found = self._terms.joints.term(fitter.model, map(detect, cameras.present))
+            found = self._terms.joints.term(fitter.model, fitter.each(detect, cameras.present))
             if not found:
                 return None
             joints = found[0]
