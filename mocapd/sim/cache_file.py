@@ -1,7 +1,10 @@
 """The simulator's cache files: a checksum, then msgpack. A file is read only if checksum and key match."""
 
+import os
+import time
 import zlib
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Protocol, TypeVar
 
@@ -14,6 +17,8 @@ from mocapd.file_lock import one_at_a_time
 from mocapd.whole_file import whole_file
 
 _CHECKSUM_BYTES = 4
+_KEY_LETTERS = 16  # of a key in a file's name
+_UNUSED_S = 7 * 86_400.0
 _MOST_BYTES = 4 << 30  # two minutes of the largest pictures
 
 
@@ -27,20 +32,38 @@ class Keyed(Protocol):
 F = TypeVar("F", bound=Keyed)
 
 
-def read_or_make(path: Path, lock: str, key: str, kind: type[F], make: Callable[[], F]) -> F:
-    """The cached file, or the result of `make`, which is stored.
+def cache_path(folder: Path, name: str, key: str) -> Path:
+    """The file of this name and key."""
+    return folder / f"{name}-{key[:_KEY_LETTERS]}.film"
 
-    lock: a file in the same folder, so that only one of several processes makes it. Raises CannotCreateError.
+
+def read_or_make(folder: Path, name: str, key: str, kind: type[F], make: Callable[[], F]) -> F:
+    """The cached file, or the result of `make`, which is stored; files of the name that were not used for a week are then
+    removed, as those of versions before an upgrade.
+
+    Of several processes only one makes it. Raises CannotCreateError.
     """
+    path = cache_path(folder, name, key)
     stored = read_cached(path, key, kind)
     if stored is not None:
+        with suppress(OSError):  # its time is that of its last use
+            os.utime(path)
         return stored
-    with one_at_a_time(path.parent, lock):
+    with one_at_a_time(folder, f"{name}.lock"):
         stored = read_cached(path, key, kind)  # another process may have made it meanwhile
         if stored is None:
             stored = make()
             write_cached(path, stored)
+            _remove_unused(folder, name)
         return stored
+
+
+def _remove_unused(folder: Path, name: str) -> None:
+    oldest_s = time.time() - _UNUSED_S
+    with suppress(OSError):
+        for path in folder.glob(f"{name}-{'?' * _KEY_LETTERS}.film"):
+            if path.stat().st_mtime < oldest_s:
+                path.unlink(missing_ok=True)
 
 
 def read_cached(path: Path, key: str, kind: type[F]) -> F | None:

@@ -18,7 +18,7 @@ import numpy as np
 import mocapd.body
 import mocapd.sim
 from mocapd.assets import asset_path
-from mocapd.sim.cache_file import read_or_make
+from mocapd.sim.cache_file import cache_path, read_or_make
 from mocapd.sim.scenario import Scenario
 from mocapd.sim.setup_record import SimSetup
 from mocapd.sim.world import World, rig_of
@@ -66,16 +66,16 @@ def load_film(scenario: Scenario, cache_dir: Path, progress: Progress | None = N
     cache cannot be written.
     """
     key = film_key(scenario)
-    path = cache_dir / f"sim-{scenario.name}-{key[:16]}.film"
     count = round(scenario.loop_s * scenario.fps_hz)
+    name = _file_name(scenario)
     stored = read_or_make(
-        path,
-        f"sim-{scenario.name}.lock",
-        key,
-        _FilmFile,
-        lambda: _render(scenario, key, progress, count),
+        cache_dir, name, key, _FilmFile, lambda: _render(scenario, key, progress, count)
     )
     return _film(scenario, stored)
+
+
+def _file_name(scenario: Scenario) -> str:
+    return f"sim-{scenario.name}"
 
 
 def _film(scenario: Scenario, stored: _FilmFile) -> Film:
@@ -92,23 +92,18 @@ def _film(scenario: Scenario, stored: _FilmFile) -> Film:
 def load_beginning(scenario: Scenario, cache_dir: Path, progress: Progress | None = None) -> Film:
     """The first seconds of the film, which are ready sooner. They play forth and back, without a jump. Raises
     CannotCreateError."""
-    key = film_key(scenario)
-    whole, path = (
-        cache_dir / f"sim-{scenario.name}-{key[:16]}.{ending}" for ending in ("film", "beginning")
-    )
-    if whole.exists():
+    key, name = film_key(scenario), _file_name(scenario)
+    if cache_path(cache_dir, name, key).exists():
         return load_film(scenario, cache_dir, progress)
     count = round(min(BEGINNING_S, scenario.loop_s) * scenario.fps_hz)
-    film = _film(
-        scenario,
-        read_or_make(
-            path,
-            f"sim-{scenario.name}-beginning.lock",
-            key,
-            _FilmFile,
-            lambda: _render(scenario, key, progress, count),
-        ),
+    stored = read_or_make(
+        cache_dir,
+        f"{name}-beginning",
+        key,
+        _FilmFile,
+        lambda: _render(scenario, key, progress, count),
     )
+    film = _film(scenario, stored)
     return replace(film, frames={name: (*one, *one[-2:0:-1]) for name, one in film.frames.items()})
 
 

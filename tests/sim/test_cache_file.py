@@ -3,13 +3,14 @@
 import os
 import random
 import threading
+import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import msgspec
 import pytest
 
-from mocapd.sim.cache_file import read_cached, read_or_make, write_cached
+from mocapd.sim.cache_file import cache_path, read_cached, read_or_make, write_cached
 
 
 class Kept(msgspec.Struct, frozen=True):
@@ -52,7 +53,7 @@ def test_any_changed_byte_is_found(path: Path) -> None:
 
 
 def test_of_two_who_need_it_at_once_one_makes_it(tmp_path: Path) -> None:
-    path, both_asked, made = tmp_path / "cache" / "a.film", threading.Event(), []
+    both_asked, made = threading.Event(), []
 
     def make() -> Kept:
         assert both_asked.wait(30.0)
@@ -60,10 +61,37 @@ def test_of_two_who_need_it_at_once_one_makes_it(tmp_path: Path) -> None:
         return KEPT
 
     with ThreadPoolExecutor(2) as pool:
-        both = [pool.submit(read_or_make, path, "a.lock", KEPT.key, Kept, make) for _ in range(2)]
+        both = [
+            pool.submit(read_or_make, tmp_path / "cache", "a", KEPT.key, Kept, make)
+            for _ in range(2)
+        ]
         both_asked.set()
         assert [one.result() for one in both] == [KEPT, KEPT]
     assert len(made) == 1
+
+
+def test_what_no_version_has_used_for_a_week_is_removed_when_something_new_is_made(
+    tmp_path: Path,
+) -> None:
+    """Each upgrade left 42 MB."""
+
+    def use(name: str, key: str) -> None:
+        read_or_make(tmp_path, name, key, Kept, lambda: msgspec.structs.replace(KEPT, key=key))
+
+    def kept() -> set[str]:
+        return {path.stem for path in tmp_path.glob("*.film")}
+
+    old, used, new = ("abcdefghijklmnop"[i:] + "0" * i for i in range(3))
+    eight_days_ago_s = time.time() - 8 * 86_400
+    made = (("a", old), ("a", used), ("a-b", old))
+    for name, key in made:
+        use(name, key)
+    for name, key in made:
+        os.utime(cache_path(tmp_path, name, key), (eight_days_ago_s, eight_days_ago_s))
+    use("a", used)
+    assert kept() == {f"a-{old}", f"a-{used}", f"a-b-{old}"}
+    use("a", new)
+    assert kept() == {f"a-{used}", f"a-{new}", f"a-b-{old}"}
 
 
 def test_what_is_no_file_is_nothing(path: Path) -> None:

@@ -59,10 +59,9 @@ def load_board_clips(
     """The board's scenes, from the cache or rendered now. Raises CannotCreateError when the cache
     cannot be written."""
     key = film_key(scenario)
-    path = cache_dir / f"setup-{scenario.name}-{key[:16]}.film"
     stored = read_or_make(
-        path,
-        f"setup-{scenario.name}.lock",
+        cache_dir,
+        f"setup-{scenario.name}",
         key,
         _BoardFile,
         lambda: _render(scenario, key, progress),
