@@ -1,7 +1,7 @@
 """Hypothesis search for an arm that disagrees with the pictures: sample, score and refine other poses."""
 
 from collections.abc import Sequence
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -154,8 +154,10 @@ def is_uncertain(
     return fit.confirmed_arms[side] < least or fit.nearer_px > params.nearer_px
 
 
+@cache  # a tracker has three searches, and another one for each wearer's clothes
 def arm_library(space: PoseSpace, size: int, side: str) -> Floats:
-    """Poses (size,3,4) of one arm spread evenly over its joint limits (Halton), the collar at rest."""
+    """Poses (size,3,4) of one arm spread evenly over its joint limits (Halton), the collar at rest. Shared: not to be
+    changed."""
     limits = space.limits
     upper, fore = space.group(side + "UpperArm"), space.group(side + "LowerArm")
     u = spread(size)

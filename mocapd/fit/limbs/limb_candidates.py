@@ -6,6 +6,7 @@ Triggs 2003), and a low-discrepancy cloud about the present pose and about rest.
 """
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 
@@ -60,8 +61,10 @@ def turned_about(bones_xyzw: Floats, cloud: Floats) -> Floats:
     return turned
 
 
+@cache
 def spread(size: int) -> Floats:
-    """The first `size` points (size,6) of the Halton sequence, without the origin (Halton 1960)."""
+    """The first `size` points (size,6) of the Halton sequence, without the origin (Halton 1960). Shared: not to be
+    changed."""
     out = np.zeros((size, 6))
     for column, base in enumerate((2, 3, 5, 7, 11, 13)):
         n, f = np.arange(1, size + 1), 1.0
