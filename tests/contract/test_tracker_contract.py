@@ -242,22 +242,6 @@ def test_frames_are_not_written_to(case: TrackerCase, tracked: Tracked) -> None:
     assert not tracked.written
 
 
-def test_a_camera_that_goes_missing_is_no_error(case: TrackerCase, tracked: Tracked) -> None:
-    """The first one, and when it is back the last one; before that the same frames after a reset give the same output."""
-    half, n = case.half, len(case.person)
-    begun = run(case.tracker, case.person[:half])
-    for first, second in zip(tracked.tracks[:half], begun, strict=True):
-        assert_same(first.body, second.body)
-    again = [shifted(one, (n - half) * PERIOD_NS) for one in case.person[half:]]
-    for missing, sets in ((0, case.person[half:]), (-1, again)):
-        for one in sets:
-            gone = [*one.frames][missing]
-            frames = {name: frame for name, frame in one.frames.items() if name != gone}
-            t_ns = next(iter(frames.values())).t_ns if frames else one.t_ns
-            partial = FrameSet(t_ns, frames)
-            assert_well_formed(case, case.tracker.step(partial), partial)
-
-
 def test_without_any_frame_ever_it_is_lost(case: TrackerCase) -> None:
     assert case.tracker.step(FrameSet(0, {})).body.tracking is Tracking.LOST
 
@@ -270,11 +254,12 @@ def test_in_an_empty_room_nobody_is_found(case: TrackerCase) -> None:
             assert track.body.tracking is Tracking.LOST
 
 
-def test_time_is_only_what_frames_say_a_pause_is_no_error_and_nobody_is_there_without_a_camera(
+def test_time_is_only_what_frames_say_and_a_pause_or_a_missing_camera_is_no_error(
     case: TrackerCase, tracked: Tracked
 ) -> None:
     """The same pictures a whole number of days later after a reset: the same states, at the frames' times, whether or
-    not the tracker learns between its steps. The next day it goes on, and without any camera the person is lost."""
+    not the tracker learns between its steps. The next day it goes on. Then the first camera goes missing, and when it is
+    back the last one; and without any camera the person is lost."""
     tracker = case.tracker.tracker
     learn = tracker.learn if isinstance(tracker, LearningTracker) else lambda: None
     later = run(case.tracker, [shifted(one, DAY_NS) for one in case.person], learn)
@@ -284,6 +269,15 @@ def test_time_is_only_what_frames_say_a_pause_is_no_error_and_nobody_is_there_wi
         track = case.tracker.step(frames)
         assert_well_formed(case, track, frames)
     assert track.body.tracking is Tracking.LIVE
+    half, n = case.half, len(case.person)
+    for k, missing in enumerate((0, -1), start=1):
+        for one in case.person[half:]:
+            again = shifted(one, 2 * DAY_NS + k * (n - half) * PERIOD_NS)
+            gone = [*again.frames][missing]
+            there = {name: frame for name, frame in again.frames.items() if name != gone}
+            t_ns = next(iter(there.values())).t_ns if there else again.t_ns
+            frames = FrameSet(t_ns, there)
+            assert_well_formed(case, case.tracker.step(frames), frames)
     for k in range(1, 91):
         nothing = FrameSet(frames.t_ns + k * PERIOD_NS, {})
         track = case.tracker.step(nothing)

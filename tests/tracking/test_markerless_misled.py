@@ -66,8 +66,8 @@ def test_a_minute_without_a_face_changes_nothing() -> None:
     there = film.joints_m[-1]
     assert there is not None
     sways = [*range(70, 90), *range(88, 70, -1)]
-    for k in range(200):
-        t_ns = film.frames[-1].t_ns + nanoseconds(0.3 * (k + 1))
+    for k in range(120):
+        t_ns = film.frames[-1].t_ns + nanoseconds(0.5 * (k + 1))
         track = tracker.step(_later(film.frames[sways[k % len(sways)]], t_ns))
         assert track.body.tracking is Tracking.LIVE
         assert track.body.joints_m is not None

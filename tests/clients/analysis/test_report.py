@@ -19,8 +19,8 @@ from mocapd_analysis.csv_tables import frames_csv, measures_csv
 from mocapd_analysis.main import app
 from mocapd_analysis.measures import Measures, measure
 from mocapd_analysis.plots import as_svg, speed_plot, thinned
-from mocapd_analysis.report import report_html
-from mocapd_analysis.report_head import ReportHead
+from mocapd_analysis.report import NO_HEAD, report_html
+from mocapd_analysis.report_head import ReportHead, head_html
 from tests.clients.analysis.motions import AT, session, standing, times, turning_arm
 from tests.clients.analysis.test_sessions import track
 
@@ -31,6 +31,11 @@ def swung(hz: float, name: str = "known") -> Measures:
     t = t[(t < 3.0) | (t > 3.6)]
     one = session(t, turning_arm(t, "left", 1.2 - 0.9 * np.cos(2.0 * np.pi * hz * t)))
     return measure(replace(one, name=name))
+
+
+def still() -> Measures:
+    """Hardly anything: somebody who stands for a moment."""
+    return measure(session(times(0.1), standing(times(0.1))))
 
 
 @pytest.fixture(scope="module")
@@ -66,8 +71,7 @@ def test_the_report_says_what_was_not_tracked(page: str) -> None:
 
 
 def test_a_report_of_hardly_anything_is_written() -> None:
-    still = measure(session(times(0.1), standing(times(0.1))))
-    page = report_html([still])
+    page = report_html([still()])
     assert "No swing" in page
     assert "Nothing repeats" in page
     assert "nan" not in re.sub(r"base64,[^\"]+", "", page)
@@ -98,7 +102,7 @@ def test_the_tables_hold_what_was_measured() -> None:
     )
 
 
-def test_every_figure_says_of_which_time_it_is() -> None:
+def test_every_figure_says_of_which_time_it_is(page: str) -> None:
     found = swung(1.0)
     rows = list(csv.DictReader(io.StringIO(measures_csv([found]))))
     assert all(float(row["from_s"]) < float(row["to_s"]) for row in rows)
@@ -109,21 +113,23 @@ def test_every_figure_says_of_which_time_it_is() -> None:
     assert float(way["from_s"]) == pytest.approx(found.swings[0].start_s, rel=1e-4)
     heights = [float(r["value"]) for r in rows if r["measure"] in ("start y", "end y")]
     assert len(heights) == 2 * len(found.swings)
-    assert "above half of it from [s]" in report_html([found])
+    assert "above half of it from [s]" in page
 
 
-def test_the_head_has_person_date_and_notes_as_text() -> None:
-    found = swung(1.0)
-    assert 'class="head"' not in report_html([found])
+def test_the_head_has_person_date_and_notes_as_text(page: str) -> None:
+    assert 'class="head"' not in page
+    found = still()
     at_s = datetime(2026, 11, 26, 15, 4).astimezone().timestamp()
     dated = replace(found, session=replace(found.session, recorded_unix_s=at_s))
-    assert "<dt>Date</dt><dd>2026-11-26 15:04</dd>" in report_html([dated, found])
-    page = report_html([dated], ReportHead("A. Player", "yesterday", "<i>left</i> knee"))
-    assert "<dd>A. Player</dd>" in page
-    assert "<dd>yesterday</dd>" in page
-    assert "&lt;i&gt;left&lt;/i&gt; knee" in page
+    recorded = "<dt>Date</dt><dd>2026-11-26 15:04</dd>"
+    assert recorded in head_html(NO_HEAD, [dated, found])
+    given = report_html([dated], ReportHead("A. Player", notes="<i>left</i> knee"))
+    assert recorded in given
+    assert "<dd>A. Player</dd>" in given
+    assert "&lt;i&gt;left&lt;/i&gt; knee" in given
+    assert "<dt>Date</dt><dd>yesterday</dd>" in head_html(ReportHead(date="yesterday"), [dated])
     unknown = replace(found, session=replace(found.session, recorded_unix_s=1e30))
-    assert 'class="head"' not in report_html([unknown])
+    assert head_html(NO_HEAD, [unknown]) == ""
 
 
 def test_thinning_a_line_loses_no_top() -> None:

@@ -28,21 +28,36 @@ class KeptTick:
 
 def least_gap_m(flight: Flight, ticks: list[KeptTick]) -> float:
     """The least distance between the ball's surface and the keeper's, before the ball is over the line [m]."""
+    near = [tick for tick in ticks if flight.at(tick.from_s + TICK_S)[2] <= NEAR_M]
+    if not near:
+        return np.inf
     starts, ends = ([INDEX[p] for p in points] for points in zip(*_ENDS, strict=True))
     radii_m = np.array([limb.radius_m for limb in LIMBS])
-    shares = np.arange(LOOKS + 1)[:, None, None] / LOOKS
-    least = np.inf
-    for tick in ticks:
-        if flight.at(tick.from_s + TICK_S)[2] > NEAR_M:
-            continue
-        ball = np.array([flight.at(tick.from_s + share * TICK_S) for share in shares.ravel()])
-        points = tick.before.points_m + shares * (tick.now.points_m - tick.before.points_m)
-        known = tick.before.known & tick.now.known
-        gaps = axis_distance_m(ball[:, None], points[:, starts], points[:, ends])
-        gaps -= radii_m + BALL_RADIUS_M
-        gaps = gaps[:, known[starts] & known[ends]][ball[:, 2] > OVER_LINE_Z_M]
-        least = min(least, gaps.min(initial=np.inf))
-    return float(least)
+    shares = np.arange(LOOKS + 1) / LOOKS
+    ball = _ball_m(flight, np.array([tick.from_s for tick in near])[:, None] + shares * TICK_S)
+    before, now = (np.stack([pose.points_m for pose in poses])[:, None] for poses in _poses(near))
+    points = before + shares[:, None, None] * (now - before)
+    known = np.stack([tick.before.known & tick.now.known for tick in near])
+    gaps = axis_distance_m(ball[:, :, None], points[:, :, starts], points[:, :, ends])
+    gaps -= radii_m + BALL_RADIUS_M
+    counts = (known[:, starts] & known[:, ends])[:, None] & (ball[..., 2] > OVER_LINE_Z_M)[
+        ..., None
+    ]
+    return float(gaps[counts].min(initial=np.inf))
+
+
+def _poses(ticks: list[KeptTick]) -> tuple[list[LimbPose], list[LimbPose]]:
+    return [tick.before for tick in ticks], [tick.now for tick in ticks]
+
+
+def _ball_m(flight: Flight, times_s: Floats) -> Floats:
+    """Where the ball's centre is (...,3) at times after the shot (...): on the last arc that has begun."""
+    out = np.empty((*times_s.shape, 3))
+    for number, arc in enumerate(flight.arcs):
+        on = (times_s >= arc.from_s) | (number == 0)
+        d = (times_s[on] - arc.from_s)[:, None]
+        out[on] = arc.position_m + d * arc.velocity_mps + 0.5 * d * d * arc.acceleration_mps2
+    return out
 
 
 _ENDS = [(limb.start, limb.end) for limb in LIMBS]

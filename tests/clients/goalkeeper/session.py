@@ -14,7 +14,7 @@ from mocapd.outputs.wire import SkeletonFrame
 from mocapd.sim.world import World
 from mocapd.types import BodyState, Tracking
 
-SESSION_S = 170.0
+SESSION_S = 90.0
 RATE_HZ = 30.0
 LATENCY_NS = 45_000_000
 SHAKE_M = 0.006

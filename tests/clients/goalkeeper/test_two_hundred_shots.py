@@ -21,7 +21,7 @@ from tests.clients.goalkeeper.session import SESSION_S, record_session
 pytestmark = pytest.mark.long
 
 SHOTS = 200
-SEEDS = (1, 2, 3, 4)  # of the recording, which is played again for each
+SEEDS = (1, 2, 3, 4, 5, 6, 7, 8)  # of the recording, which is played again for each
 
 
 class Heard:
