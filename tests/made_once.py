@@ -13,18 +13,21 @@ from mocapd.assets import asset_path
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.published.hecht2009.build import build_hecht2009_tracker
+from mocapd.published.rao_hodges.build import build_rao_hodges_tracker
 from mocapd.session.prepared_marker import remember
 from mocapd.session.tracker_setup import cache_resources, make_caches, ready_tracker
 from mocapd.sim.film import load_film
 from mocapd.sim.scenario import load_scenario
+from mocapd.tracking.base import Tracker
 from mocapd.tracking.tracker_inputs import wearer_shape
 from tests.conftest import ROOT
 from tests.sim.simulated_calibration import calibration_of_setup
-from tests.tracking.hard_film import N_EMPTY, hard_film
+from tests.tracking.hard_film import CLOSE_PAIR, N_EMPTY, HardFilm, hard_film
+from tests.tracking.plain_film import PlainFilm, plain_film
+from tests.tracking.profiles import markerless_tracker
 from tests.tracking.stepping import Stepping
 
-LARGE_FACE = "before_a_television"
-_CONFIRMED = 25  # frames in which whoever came is found, believed and followed
+_CONFIRMED = 25  # frames
 CACHE = ROOT / ".pytest_cache" / "d" / "mocapd" / "mocapd"  # in the fixture cache_home
 
 
@@ -43,9 +46,17 @@ def _compile(tracker: str) -> None:
     ready_tracker(tracker, _room(), cache_resources(CACHE, _quiet), _quiet)
 
 
+def _follow(film: HardFilm | PlainFilm, build: Callable[[Calibration], Tracker]) -> None:
+    """Whoever comes is found, believed and followed."""
+    tracker = Stepping(build(film.known), wearer_shape(film.known))
+    for one in film.frames[: N_EMPTY + _CONFIRMED]:
+        tracker.step(one)
+
+
 def film_and_markerless() -> None:
-    """The renderer's kernels, the film, and the kernels of the tracker without a shirt."""
+    """The renderer's kernels, the film, and the kernels of the tracker without a shirt, also of two cameras side by side."""
     _compile("markerless")
+    _follow(hard_film(CLOSE_PAIR), markerless_tracker)
 
 
 def database_and_shirt() -> None:
@@ -57,12 +68,10 @@ def database_and_shirt() -> None:
 def published_trackers() -> None:
     """Kernels of the published trackers; wang2011 waits for the film, too.
 
-    Most of hecht2009's compile when a face is found, which no picture of the setup shows large enough.
+    Most of the others' compile when somebody is found, who stands too far away in the setup's film.
     """
-    film = hard_film(LARGE_FACE)
-    tracker = Stepping(build_hecht2009_tracker(film.known), wearer_shape(film.known))
-    for one in film.frames[: N_EMPTY + _CONFIRMED]:
-        tracker.step(one)
+    _follow(hard_film("before_a_television"), build_hecht2009_tracker)
+    _follow(plain_film(has_third=True), build_rao_hodges_tracker)
     _compile("wang2011")
 
 

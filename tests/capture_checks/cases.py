@@ -53,6 +53,9 @@ def make_wrong(case: WrongCapture, captures: Path, folder: Path) -> Path:
     (out / "rig.json").write_text(json.dumps(rig))
     for one in case.videos:
         origin = captures / (case.from_capture or case.capture) / f"{one.camera}.mp4"
+        if one.edit is unchanged:
+            shutil.copyfile(origin, out / origin.name)
+            continue
         _encode(out / f"{one.camera}.mp4", one.edit(_pictures(origin)), one.fps_hz)
     return out
 
@@ -130,7 +133,7 @@ def letterboxed(factor: float) -> Callable[[Pictures], Iterable[Bytes]]:
 
 
 def unchanged(pictures: Pictures) -> Iterable[Bytes]:
-    """Encoded anew."""
+    """As they are: the file is copied."""
     return pictures
 
 
