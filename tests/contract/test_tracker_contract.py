@@ -271,8 +271,8 @@ def test_time_is_only_what_frames_say_and_a_pause_or_a_missing_camera_is_no_erro
     assert track.body.tracking is Tracking.LIVE
     half, n = case.half, len(case.person)
     for k, missing in enumerate((0, -1), start=1):
-        for one in case.person[half:]:
-            again = shifted(one, 2 * DAY_NS + k * (n - half) * PERIOD_NS)
+        for seen in case.person[half:]:
+            again = shifted(seen, 2 * DAY_NS + k * (n - half) * PERIOD_NS)
             gone = [*again.frames][missing]
             there = {name: frame for name, frame in again.frames.items() if name != gone}
             t_ns = next(iter(there.values())).t_ns if there else again.t_ns
