@@ -28,7 +28,7 @@ class PatientImports:
     def find_spec(
         self, _name: str, _path: Sequence[str] | None, _target: ModuleType | None = None
     ) -> None:
-        """See `importlib.abc.MetaPathFinder`: called before each new module; finds nothing."""
+        """Called by the import of each new module, before any other finder; finds nothing."""
         if threading.get_ident() == self._thread and time.monotonic() > self._until_s:
             self._idle.wait()
             self._until_s = time.monotonic() + _PIECE_S
