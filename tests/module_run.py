@@ -6,8 +6,12 @@ import sys
 
 from tests.conftest import ROOT
 
+PATIENCE_S = 600.0
 
-def module_run(env: dict[str, str], module: str, *words: str) -> str:
+
+def module_run(
+    env: dict[str, str], module: str, *words: str, patience_s: float = PATIENCE_S
+) -> str:
     """What it prints; the test fails with all of it when something was not as it should be."""
     ran = subprocess.run(
         [sys.executable, "-m", module, *words],
@@ -15,7 +19,7 @@ def module_run(env: dict[str, str], module: str, *words: str) -> str:
         env=env | {"PATH": os.environ["PATH"]},
         capture_output=True,
         text=True,
-        timeout=600,
+        timeout=patience_s,
         check=False,
     )
     assert ran.returncode == 0, ran.stdout + ran.stderr

@@ -24,7 +24,7 @@ from mocapd.outputs.zenoh import keys
 from mocapd.web.runtime_file import Running, running
 from mocapd.web.watcher import socket_address
 from tests.cli.mocapd_process import COMMAND
-from tests.conftest import ROOT
+from tests.faults.row import ROOT
 from tests.outputs.frames import free_port
 
 INSTANCE = "faults"

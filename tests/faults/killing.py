@@ -11,10 +11,9 @@ from pathlib import Path
 from mocapd.errors import MocapdError
 from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.wire import SkeletonFrame
-from tests.conftest import ROOT
 from tests.faults.endless_writer import cached_number, saved_number
 from tests.faults.faulty_daemon import FaultyDaemon, environment_of
-from tests.faults.row import Came, Extent, FaultRow
+from tests.faults.row import ROOT, Came, Extent, FaultRow
 from tests.outputs.recorded import HZ
 
 KILLS = 200  # of which every fourth goes to each of four kinds

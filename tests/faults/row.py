@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
-from tests.conftest import ROOT
-
+ROOT = Path(__file__).resolve().parents[2]
 _SMALL_ROOM = ROOT / "tests" / "e2e" / "two_webcams.toml"
 
 

@@ -1,12 +1,17 @@
-"""A scenario small enough for tests: two cameras of 160x120, a bare room, one loop of two seconds."""
+"""A scenario small enough for tests: two cameras of 160x120, a bare room, one loop of two seconds.
+
+The renderer is imported when something is drawn: its kernels take longer to import than the films of most tests to read.
+"""
 
 import copy
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import Scenario, scenario_from_dict
 from mocapd.sim.world import World
+
+if TYPE_CHECKING:
+    from mocapd.sim.renderer import CameraRenderer
 
 LAMP_OFF_S, LAMP_ON_S = 0.8, 1.4
 
@@ -78,6 +83,8 @@ def scenario(**changes: Any) -> Scenario:
 
 
 @cache
-def renderers() -> tuple[CameraRenderer, ...]:
+def renderers() -> "tuple[CameraRenderer, ...]":
     """Renderers of the unchanged scenario, made once."""
+    from mocapd.sim.renderer import camera_renderers
+
     return tuple(camera_renderers(World(scenario())))
