@@ -20,7 +20,7 @@ from mocapd.types import Camera
 from mocapd.wizard.draft import ExtrinsicsQuality
 from mocapd.wizard.draft_file import FILE_NAME, read_draft, write_draft
 from mocapd.wizard.step_names import StepName
-from tests.browser.conftest import Served, problems_of
+from tests.browser.conftest import DRAWN_SLOWLY, Served, problems_of
 from tests.browser.test_setup import SCENARIO, STEP_MS, done, shown
 
 
@@ -128,6 +128,7 @@ def test_a_setup_is_gone_on_with_after_a_kill_and_without_a_shirt(
     browser: Browser, tmp_path: Path, user_env: dict[str, str]
 ) -> None:
     page = browser.new_page(viewport={"width": 1100, "height": 800})
+    page.add_init_script(DRAWN_SLOWLY)
     heard = problems_of(page)
     state_dir = tmp_path / "state"
     kept = begun_and_killed(page, state_dir, user_env)

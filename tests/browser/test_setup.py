@@ -28,7 +28,7 @@ from mocapd.types import Bytes
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.draft_file import FILE_NAME, UnfinishedSetup, write_draft
 from mocapd.wizard.step_names import StepName
-from tests.browser.conftest import FOR_THE_DOCS, Served, problems_of
+from tests.browser.conftest import DRAWN_SLOWLY, FOR_THE_DOCS, Served, problems_of
 from tests.conftest import ROOT
 from tests.sim.kept_capture import kept_capture
 
@@ -134,6 +134,8 @@ def served(tmp_path_factory: pytest.TempPathFactory, user_env: dict[str, str]) -
 def page(browser: Browser, pictures: Path) -> Iterator[Page]:
     """A window; what it shows when something fails is kept."""
     page = browser.new_page(viewport={"width": 1100, "height": 800})
+    if not FOR_THE_DOCS:
+        page.add_init_script(DRAWN_SLOWLY)
     yield page
     if not page.is_closed():
         page.screenshot(path=pictures / "last.jpg", quality=80)
@@ -268,7 +270,7 @@ def test_a_recording_is_tracked_with_the_saved_file(
 ) -> None:
     """As well as with the true rig, but for the direction in which the board lay."""
     scenario = load_scenario(SCENARIO)
-    late = msgspec.structs.replace(scenario, scribble_s=0.0)
+    late = msgspec.structs.replace(scenario, scribble_s=0.0, fps_hz=15.0)
     capture = kept_capture(late, 2.0, cache_home)
     errors = {}
     for name, options in (("true", []), ("saved", ["--calibration", str(setup.saved)])):
