@@ -39,24 +39,28 @@ def violations(page: Page, name: str) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("name", PAGES)
-def test_steps(page: Page, server: WebServer, host: TinyHost, name: str) -> None:
-    step, view = PAGES[name]
+@pytest.fixture(scope="module")
+def steps(page: Page, server: WebServer, host: TinyHost) -> ShownWizard:
+    """What the page shows of a setup, loaded once for all steps."""
     shown = ShownWizard()
-    shown.show(step, view)
     host.wizard = shown  # type: ignore[assignment]
-    try:
-        page.goto(server.url)
-        page.locator(f"#part > .part-{step.value}").wait_for(timeout=WAIT_MS)
-        expect(page.locator("#sentence")).to_have_text(view.sentence, timeout=WAIT_MS)
-        assert violations(page, name) == []
-    finally:
-        host.wizard = None
+    page.goto(server.url)
+    return shown
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_steps(page: Page, steps: ShownWizard, name: str) -> None:
+    step, view = PAGES[name]
+    steps.show(step, view)
+    page.locator(f"#part > .part-{step.value}").wait_for(timeout=WAIT_MS)
+    expect(page.locator("#sentence")).to_have_text(view.sentence, timeout=WAIT_MS)
+    assert violations(page, name) == []
 
 
 def test_the_last_page_and_a_setup_that_is_none(
     page: Page, server: WebServer, host: TinyHost
 ) -> None:
+    host.wizard = None
     page.goto(f"{server.url}#setup")
     expect(page.locator("#begin")).to_be_visible(timeout=WAIT_MS)
     assert violations(page, "no setup") == []

@@ -66,10 +66,18 @@ NAMED = """async () => {
 class Shown:
     """A page with a setup that a test leads."""
 
-    def __init__(self, host: TinyHost, page: Page) -> None:
-        self.host, self.page = host, page
+    def __init__(self, host: TinyHost, page: Page, url: str) -> None:
+        self.host, self.page, self.url = host, page, url
         self.wizard = ShownWizard()
-        host.wizard = self.wizard  # type: ignore[assignment]
+        self.problems = problems_of(page)
+
+    def load(self) -> None:
+        """With the first step, as somebody who comes to it."""
+        self.wizard = ShownWizard()
+        self.host.wizard = self.wizard  # type: ignore[assignment]
+        self.page.set_viewport_size(SIZES["desk"])
+        self.page.goto(self.url)
+        self.page.locator("#part > .part-cameras").wait_for(timeout=WAIT_MS)
 
     def show(self, step: StepName, view: Any, **changes: object) -> None:
         self.wizard.show(step, view, **changes)
@@ -89,20 +97,37 @@ class Shown:
         return found
 
 
-@pytest.fixture
-def shown(browser: Browser, server: WebServer, host: TinyHost) -> Iterator[Shown]:
+@pytest.fixture(scope="module")
+def loaded(browser: Browser, server: WebServer, host: TinyHost) -> Iterator[Shown]:
+    """One page for all: to load it takes longer than to look at it."""
     with browser.new_context(viewport=SIZES["desk"]) as context:
         page = context.new_page()
         page.add_init_script(f"({LISTEN})()")
-        heard = problems_of(page)
-        one = Shown(host, page)
         for camera in ("cam0", "cam1"):
             host.show(camera, 110)
-        page.goto(server.url)
-        page.locator("#part > .part-cameras").wait_for(timeout=WAIT_MS)
+        one = Shown(host, page, server.url)
+        one.load()
         yield one
         host.wizard = None
-        assert heard == []
+
+
+@pytest.fixture
+def shown(loaded: Shown) -> Iterator[Shown]:
+    """At the first step again."""
+    loaded.page.set_viewport_size(SIZES["desk"])
+    loaded.show(*PAGES["cameras"])
+    loaded.wizard.heard.clear()
+    yield loaded
+    assert loaded.problems == []
+
+
+@pytest.fixture
+def alone(loaded: Shown) -> Iterator[Shown]:
+    """Loaded anew, as is the next: it hears, or ends."""
+    loaded.load()
+    yield loaded
+    assert loaded.problems == []
+    loaded.load()
 
 
 def test_instruction_and_its_one_button_are_in_sight_at_every_size(
@@ -198,38 +223,38 @@ def test_a_cameras_name_on_the_plan_is_not_in_what_it_sees(shown: Shown) -> None
         assert np.hypot(*away).min() > 7, "the symbol"
 
 
-def test_it_is_said_aloud_what_to_do_until_it_is_switched_off(shown: Shown) -> None:
-    shown.page.click("h1")  # browsers are silent before
-    shown.show(StepName.LENS, lens(7))
-    shown.page.wait_for_timeout(1300)
-    shown.wizard.show(StepName.LENS, lens(8))
-    shown.wait_for("Next.")
-    shown.page.wait_for_timeout(1300)
-    shown.show(StepName.LENS, dataclasses.replace(lens(8), sentence="Hold still."))
-    shown.wait_for("Hold still.")
+def test_it_is_said_aloud_what_to_do_until_it_is_switched_off(alone: Shown) -> None:
+    alone.page.click("h1")  # browsers are silent before
+    alone.show(StepName.LENS, lens(7))
+    alone.page.wait_for_timeout(1300)
+    alone.wizard.show(StepName.LENS, lens(8))
+    alone.wait_for("Next.")
+    alone.page.wait_for_timeout(1300)
+    alone.show(StepName.LENS, dataclasses.replace(lens(8), sentence="Hold still."))
+    alone.wait_for("Hold still.")
     for phase in ("leaving", "seeking", "judged"):
-        shown.page.wait_for_timeout(1300)
-        shown.show(StepName.CHECK, check(phase))
-    shown.wait_for("Done.")
-    words = shown.words()
+        alone.page.wait_for_timeout(1300)
+        alone.show(StepName.CHECK, check(phase))
+    alone.wait_for("Done.")
+    words = alone.words()
     assert "Step out of every camera's picture." in words
     assert "Come back, stand upright, and face the cameras." in words
-    assert shown.page.evaluate("heard.tones") >= len(words)
-    shown.page.click("#sound")
-    expect(shown.page.locator("#sound")).to_have_attribute("aria-pressed", "false")
-    shown.page.wait_for_timeout(1300)
-    shown.show(StepName.LENS, lens(3, StepState.FAILED))
-    shown.page.wait_for_timeout(400)
-    assert shown.words() == words, "it is silent now"
+    assert alone.page.evaluate("heard.tones") >= len(words)
+    alone.page.click("#sound")
+    expect(alone.page.locator("#sound")).to_have_attribute("aria-pressed", "false")
+    alone.page.wait_for_timeout(1300)
+    alone.show(StepName.LENS, lens(3, StepState.FAILED))
+    alone.page.wait_for_timeout(400)
+    assert alone.words() == words, "it is silent now"
 
 
 def test_the_last_page_says_what_is_saved_and_what_to_run(
-    shown: Shown, host: TinyHost, pictures: Path
+    alone: Shown, host: TinyHost, pictures: Path
 ) -> None:
     """Also after the process that served it has ended."""
-    page = shown.page
-    shown.show(StepName.CHECK, check())
-    shown.wizard.show(StepName.CHECK, check(saved=SAVED), saved=True)
+    page = alone.page
+    alone.show(StepName.CHECK, check())
+    alone.wizard.show(StepName.CHECK, check(saved=SAVED), saved=True)
     expect(page.locator("#finished")).to_be_visible(timeout=WAIT_MS)
     expect(page.locator("#saved-to")).to_have_text(SAVED)
     expect(page.locator("#next-command")).to_have_text("mocapd run")
@@ -247,11 +272,11 @@ def test_the_last_page_says_what_is_saved_and_what_to_run(
 
 
 def test_where_a_daemon_runs_the_last_page_leads_to_its_live_view(
-    shown: Shown, host: TinyHost
+    alone: Shown, host: TinyHost
 ) -> None:
-    shown.wizard.show(StepName.CHECK, check(saved=SAVED, following=""), saved=True)
-    expect(shown.page.locator("#finished")).to_be_visible(timeout=WAIT_MS)
+    alone.wizard.show(StepName.CHECK, check(saved=SAVED, following=""), saved=True)
+    expect(alone.page.locator("#finished")).to_be_visible(timeout=WAIT_MS)
     host.wizard = None
-    shown.page.wait_for_timeout(500)
-    shown.page.get_by_role("link", name="live view", exact=True).click()
-    expect(shown.page.locator("#live-title")).to_be_visible(timeout=WAIT_MS)
+    alone.page.wait_for_timeout(500)
+    alone.page.get_by_role("link", name="live view", exact=True).click()
+    expect(alone.page.locator("#live-title")).to_be_visible(timeout=WAIT_MS)
