@@ -21,7 +21,7 @@ from tests.web.tiny_host import TinyHost
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 FOR_THE_DOCS = "MOCAPD_SCREENSHOTS" in os.environ  # pictures show what users see, and take time
 PATIENCE_MS = 240_000  # of a step in a page: this machine may be busy
-# Pictures are asked for as fast as the browser draws: two a second cost a tenth of thirty.
+# Pictures are asked for as fast as the browser draws: two a second take less than the fifteen that the page may ask for.
 DRAWN_SLOWLY = (
     "window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 500)"
 )
