@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 MARKER = "prepared"
 LOCK = "prepared.lock"  # held during preparation
-REMEMBERED = 8
+REMEMBERED = 32  # a tracker has four: real cameras or simulated, all or the database
 _MOST_BYTES = 1 << 16
 
 _log = logging.getLogger(__name__)

@@ -13,10 +13,11 @@ import pytest
 from mocapd.app.daemon.cache_warmup import database_in_background
 from mocapd.app.terminal import progress
 from mocapd.app.terminal.progress import ProgressBars
-from mocapd.config.sections import Config
+from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.session import tracker_setup
-from mocapd.session.prepared_marker import MARKER
+from mocapd.session.prepared_marker import MARKER, is_prepared, remember
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
+from mocapd.trackers.registry import TRACKERS
 from tests.cli.mocapd_process import Outcome, mocapd
 from tests.cli.small_capture import write_capture
 from tests.outputs.frames import eventually, free_port
@@ -63,6 +64,19 @@ def test_a_marker_that_cannot_be_written_is_no_hint(
     assert outcome.code == 0, outcome.err
     assert "Traceback" not in outcome.err
     assert outcome.err.count("the next start prepares") == 1
+
+
+def test_who_tries_all_trackers_prepares_each_once(tmp_path: Path) -> None:
+    """With real and with simulated cameras, all of it and a part: none makes another forgotten."""
+    tried = [
+        (Config(cache_dir=tmp_path, camera=(CameraSection("a", at),), tracker=TrackerSection(name)), part)
+        for name in TRACKERS
+        for at in ("/dev/video0", "sim:living_room#cam0")
+        for part in ("", " database")
+    ]  # fmt: skip
+    for config, part in tried:
+        remember(config, part)
+    assert all(is_prepared(config, part) for config, part in tried)
 
 
 def test_a_database_that_was_made_is_not_looked_at_by_the_next_setup(
