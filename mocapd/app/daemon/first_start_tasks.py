@@ -72,13 +72,12 @@ def first_start_tasks(config: "Config") -> list[Task]:
         for row, after in zip(rows, callees_of_rows(rows), strict=True)
     ]
     making = (
-        (DATABASE, has_database, _DATABASE_BEGINNING_S, _DATABASE_S, _make_database),
-        (FILM, has_film, _FILM_BEGINNING_S, _FILM_S, _make_film),
+        ("database", DATABASE, _DATABASE_BEGINNING_S, _DATABASE_S, _make_database),
+        ("film", FILM, _FILM_BEGINNING_S, _FILM_S, _make_film),
     )
-    for what, is_missing, beginning_s, whole_s, make in making:
-        if not is_missing:
+    for stage, what, beginning_s, whole_s, make in making:
+        if stage not in stages:
             continue
-        stage = "database" if what == DATABASE else "film"
         after = _rows_of_stage(rows, stage)
         if is_early:
             beginning = partial(make, config, is_beginning=True)
