@@ -4,9 +4,11 @@ clients test-clients: VENV := .venv-clients
 BIN = $(VENV)/bin
 READY = $(VENV)/ready
 # The first Python that runs and that the locks are for, else one later; say PYTHON=... to choose another.
-PYTHON ?= $(shell for below in 15 99; do for p in python3 python3.13 python3.12 python3.11 python3.14; do \
+ifeq ($(origin PYTHON),undefined) # looked for once, not at each mention
+PYTHON := $(shell for below in 15 99; do for p in python3 python3.13 python3.12 python3.11 python3.14; do \
 	"$$p" -c "import sys; sys.exit(not (3, 11) <= sys.version_info < (3, $$below))" 2>/dev/null \
 	&& echo "$$p" && exit; done; done)
+endif
 # What locks/ is for. Elsewhere pip chooses the versions, within the bounds in pyproject.toml.
 LOCKED := import platform, sys; sys.exit(not (sys.version_info < (3, 15) and sys.platform == "linux" \
 	and platform.machine() in ("x86_64", "aarch64")))
