@@ -65,9 +65,20 @@ def load_film(scenario: Scenario, cache_dir: Path, progress: Progress | None = N
     A stale, damaged or incomplete cache file is rendered again. Raises CannotCreateError when the
     cache cannot be written.
     """
-    key = film_key(scenario)
-    count = round(scenario.loop_s * scenario.fps_hz)
-    name = _file_name(scenario)
+    return _load(
+        scenario, _file_name(scenario), film_key(scenario), scenario.loop_s, cache_dir, progress
+    )
+
+
+def _load(
+    scenario: Scenario,
+    name: str,
+    key: str,
+    length_s: float,
+    cache_dir: Path,
+    progress: Progress | None,
+) -> Film:
+    count = round(length_s * scenario.fps_hz)
     stored = read_or_make(
         cache_dir, name, key, _FilmFile, lambda: _render(scenario, key, progress, count)
     )
@@ -94,16 +105,9 @@ def load_beginning(scenario: Scenario, cache_dir: Path, progress: Progress | Non
     CannotCreateError."""
     key, name = film_key(scenario), _file_name(scenario)
     if cache_path(cache_dir, name, key).exists():
-        return load_film(scenario, cache_dir, progress)
-    count = round(min(BEGINNING_S, scenario.loop_s) * scenario.fps_hz)
-    stored = read_or_make(
-        cache_dir,
-        f"{name}-beginning",
-        key,
-        _FilmFile,
-        lambda: _render(scenario, key, progress, count),
-    )
-    film = _film(scenario, stored)
+        return _load(scenario, name, key, scenario.loop_s, cache_dir, progress)
+    length_s = min(BEGINNING_S, scenario.loop_s)
+    film = _load(scenario, f"{name}-beginning", key, length_s, cache_dir, progress)
     return replace(film, frames={name: (*one, *one[-2:0:-1]) for name, one in film.frames.items()})
 
 

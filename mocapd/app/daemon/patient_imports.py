@@ -13,7 +13,7 @@ _PIECE_S = 0.006  # of imports in one idle moment: they hold Python's lock
 
 class PatientImports:
     """Within this context, this thread waits for an idle moment before it imports a module, after some milliseconds of
-    importing. All at once, the page's 300 modules take eight frame sets."""
+    importing. All at once, the page's 240 modules take eight frame sets."""
 
     def __init__(self, idle: IdleMoments) -> None:
         self._idle = idle

@@ -96,9 +96,9 @@ class CameraViews:
         drawn = None if state is None else drawing.render_about(state, dt_s, self._params.margin_px)
         self.each[i].mark_body(drawn)
 
-    def update_foreground(self, everywhere: bool = True) -> None:
-        """Updates the foreground masks; not everywhere: only about the marked body."""
-        self._each(lambda i: self.each[i].update_foreground(everywhere), self.present)
+    def update_foreground(self) -> None:
+        """Updates the foreground masks of whole pictures."""
+        self._each(lambda i: self.each[i].update_foreground(), self.present)
 
     def renew_before(self, searches_everywhere: bool) -> None:
         """Updates the foreground masks. searches_everywhere: in whole pictures, and with a search for ghosts."""
