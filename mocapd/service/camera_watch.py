@@ -45,7 +45,7 @@ class CameraWatch:
         on_death: Callable[[BaseException], None] | None = None,
     ) -> None:
         """rig: None disables all checks; onwards: receives the admitted frames; rooms: memory of earlier runs;
-        idle: of the pipeline; on_death: receives an unexpected error of the thread."""
+        idle: of the pipeline; on_death: receives an unexpected error of a thread."""
         sources = list(sources)
         calibrated = {camera.name: camera for camera in rig.cameras} if rig else {}
         self._cameras = {
@@ -68,7 +68,7 @@ class CameraWatch:
         }
         self._bumps = {name: BumpWatch(memory) for name, memory in self._memories.items()}
         self._swapped = SwappedCameras(list(self._cameras.values()))
-        self._views = ViewWatch(rig, self._newest_of, stature_m, idle=idle)
+        self._views = ViewWatch(rig, self._newest_of, stature_m, idle=idle, on_death=on_death)
         self._compared = CheckResult()
         self._looked_at: dict[str, Frame] = {}
         self._misplaced: set[str] = set()

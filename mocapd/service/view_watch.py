@@ -34,11 +34,13 @@ class ViewWatch:
         stature_m: float | None = None,
         longest_s: float = _LONGEST_S,
         idle: IdleMoments | None = None,
+        on_death: Callable[[BaseException], None] | None = None,
     ) -> None:
         """rig: None disables it. newest: thread-safe, the newest frame of a camera; longest_s: limit of collecting when
-        little moves; idle: of the pipeline, which looks of the network wait for (None: for nothing)."""
+        little moves; idle: of the pipeline, which looks of the network wait for (None: for nothing); on_death: receives an
+        unexpected error of the thread."""
         self._rig, self._stature_m, self._longest_s = rig, stature_m, longest_s
-        self._newest, self._idle = newest, idle
+        self._newest, self._idle, self._on_death = newest, idle, on_death
         self._sizes = {camera.name: camera.size_px for camera in rig.cameras} if rig else {}
         self._waiting: deque[tuple[str, int, Bytes, float]] = deque(maxlen=_MOST_WAITING)
         self._is_collecting = bool(self._sizes)
@@ -80,6 +82,14 @@ class ViewWatch:
 
     def _run(self) -> None:
         lower_priority()
+        try:
+            self._compare_again_and_again()
+        except BaseException as error:
+            if self._on_death is not None:
+                self._on_death(error)
+            raise
+
+    def _compare_again_and_again(self) -> None:
         while not self._stopping.is_set():
             result = self._compare()
             if result is None:

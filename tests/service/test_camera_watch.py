@@ -15,6 +15,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.service import camera_watch
 from mocapd.service.camera_watch import CameraWatch
 from mocapd.service.room_memory import RoomMemory
+from mocapd.service.view_watch import ViewWatch
 from mocapd.types import Bytes, Camera, Frame, Rig
 from tests.calibrate.distant_scene import Room, camera, turn
 from tests.calibrate.test_changed_places import room
@@ -182,3 +183,21 @@ def test_the_checks_run_in_a_thread_of_their_own_and_its_error_ends_the_service(
     watch.stop()
     assert threads == ["camera-watch"] * 3
     assert isinstance(errors[0], ValueError)
+
+
+def test_an_error_while_views_are_compared_is_handed_on_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    errors = list[BaseException]()
+
+    def compare(_watch: ViewWatch) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(ViewWatch, "_compare", compare)
+    monkeypatch.setattr(threading, "excepthook", lambda _: None)
+    rig = Rig((camera("left"), camera("right")))
+    watch = CameraWatch([], rig, FrameHub(rig.names), on_death=errors.append)
+    watch.start()
+    assert eventually(lambda: bool(errors), 60.0)
+    watch.stop()
+    assert isinstance(errors[0], ZeroDivisionError)

@@ -246,14 +246,16 @@ class CaptureThread:
 
     def _judge_rate(self) -> None:
         measured_hz = self._record.rate.rate_hz()
-        if self._expected_hz is not None and measured_hz < 0.9 * self._expected_hz:
-            _LOG.warning(
-                "%s: delivers %.1f Hz, asked for %g Hz: in dim light turn off automatic exposure, "
-                "else its USB controller or the processor is overloaded",
-                self._source.name,
-                measured_hz,
-                self._expected_hz,
-            )
+        if self._expected_hz is None or measured_hz >= 0.9 * self._expected_hz:
+            return
+        if self._plug is not None:
+            mend = "in dim light turn off automatic exposure, else its USB controller or the processor is overloaded"
+        elif self._node is not None:
+            mend = "its machine or the network is overloaded, or it is in dim light"
+        else:
+            mend = "the processor is overloaded"
+        name, asked_hz = self._source.name, self._expected_hz
+        _LOG.warning("%s: delivers %.1f Hz, asked for %g Hz: %s", name, measured_hz, asked_hz, mend)
 
     def _wait_after(self, error: MocapdError, delivered: bool, failures: int) -> None:
         renewal, self._renewal = self._renewal, ""
