@@ -1,7 +1,7 @@
 """Makes what many of the processes of `make test` need, before them: kernels, a film, and the pose database.
 
-Four that begin at the same moment would otherwise compile the same, each for itself. Three processes share the work;
-what is there already is left as it is.
+Four that begin at the same moment would otherwise compile the same, each for itself, as they would read all tests for
+the first time. Four processes share the work; what is there already is left as it is.
 """
 
 import subprocess
@@ -87,10 +87,21 @@ def main(words: list[str]) -> int:
         PARTS[words[0]]()
         return 0
     made = [subprocess.Popen([sys.executable, "-m", "tests.made_once", name]) for name in PARTS]
+    reading = _read_tests()
     code = max([abs(one.wait()) for one in made])
+    if reading is not None:
+        reading.wait()  # a test that cannot be read says so itself
     if code == 0:
         _remember()
     return code
+
+
+def _read_tests() -> subprocess.Popen[bytes] | None:
+    """Python's code of the tests, with what pytest adds to their assertions, where it is not there yet."""
+    if any((ROOT / "tests" / "__pycache__").glob("*-pytest-*.pyc")):
+        return None
+    collect = [sys.executable, "-m", "pytest", "--collect-only", "-q", "--ignore", "tests/clients"]
+    return subprocess.Popen(collect, stdout=subprocess.DEVNULL)
 
 
 def _remember() -> None:
