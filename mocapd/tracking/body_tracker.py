@@ -237,7 +237,7 @@ class BodyTracker:
             observed = clothes.observe(predicted, t_ns, state.legs_since_ns, False)
         if clothes is not None and clothes.alone and observed is not None:
             whole = clothes.fit_whole_body(state, observed, dt_s, self.probe)
-        self._update_clothes_trust(whole, t_ns, len(present))
+        self._update_clothes_trust(whole, t_ns, len(clothes.cameras.present) if clothes else 0)
         trunk = None if separate is not None else trunk
         if whole is None and trunk is not None:
             return self._solve_by_shirt(state, predicted, trunk, observed, dt_s, t_ns)

@@ -127,6 +127,21 @@ def test_a_camera_that_is_unplugged_leaves_the_other(film: PlainFilm, tracker: S
     assert tracks[-1].body.cameras == ("left",)
 
 
+def test_a_camera_that_is_plugged_in_later_joins_without_a_gap() -> None:
+    film = plain_film(has_third=True)
+    tracker = Stepping(markerless_tracker(film.known), wearer_shape(film.known))
+    joins = N_EMPTY + 20
+    early = [
+        replace(one, frames={n: f for n, f in one.frames.items() if n != "back"})
+        for one in film.frames[:joins]
+    ]
+    assert is_live(run(tracker, early)[-1])
+    tracks = run(tracker, film.frames[joins:])
+    assert all(is_live(track) for track in tracks)
+    assert "back" in tracks[-1].body.cameras
+    assert np.median(off_m(tracks[-1], film.joints_m[-1])) < 0.08
+
+
 def test_a_recording_that_never_shows_the_room_empty_tells_it_all_the_same() -> None:
     film = plain_film(to_m=(0.6, 0.2))
     never_empty = film.frames[N_EMPTY:]

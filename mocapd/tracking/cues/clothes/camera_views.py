@@ -25,7 +25,7 @@ T = TypeVar("T")
 
 class CameraViews:
     """All cameras of a fitter, which may change from frame to frame. present: each present camera's time offset from the
-    frame set [s], by index."""
+    frame set [s], by index; newcomers: the same of those that are left out of it, see `set_newcomers_aside`."""
 
     def __init__(self, fitter: Fitter, params: ClothesParams) -> None:
         self.fitter, self._params, self._each = fitter, params, fitter.each
@@ -38,6 +38,7 @@ class CameraViews:
         self._weights = np.full(256, int(255 * params.soft), np.uint8)
         self._weights[BACKGROUND] = 255
         self.present: dict[int, float] = {}
+        self.newcomers: dict[int, float] = {}
 
     def reset(self) -> None:
         """Forget background and appearance."""
@@ -48,7 +49,39 @@ class CameraViews:
         """Stores work pictures (h,w,3) by camera, and `present`."""
         for i, picture in pictures.items():
             self.each[i].take(picture)
-        self.present = present
+        self.present, self.newcomers = present, {}
+
+    def set_newcomers_aside(self) -> None:
+        """Leaves the cameras that know no background or no appearance out of this frame set, if others know both: they were
+        absent, or did not show the person, when the others learned it."""
+        known = {
+            i: dt_s
+            for i, dt_s in self.present.items()
+            if self.each[i].appearance.is_learned and not self.each[i].background.is_new
+        }
+        if known:
+            self.newcomers |= {i: s for i, s in self.present.items() if i not in known}
+            self.present = known
+
+    def admit_newcomers(self, state: MotionState, merge: Sequence[int]) -> None:
+        """Teaches the newcomers background and appearance, as far as they show a body that fits the other cameras. merge:
+        which regions are one, see `Appearance.merge_regions`."""
+        newcomers, self.newcomers = self.newcomers, {}
+        self.present = dict(sorted((self.present | newcomers).items()))
+
+        def admit(i: int) -> None:
+            self._mark(i, state)
+            camera = self.each[i]
+            if camera.background.is_new:
+                camera.background.seed(camera.picture, camera.body)
+            if camera.near is None:
+                return
+            self._distrust_background(i)
+            camera.update_foreground()
+            self._learn(i, state, self.present[i], camera.near, None)
+            camera.appearance.merge_regions(merge)
+
+        self._each(admit, newcomers)
 
     def learn_room(
         self, pictures_bgr: Mapping[int, Sequence[Bytes]], times_s: Mapping[int, Floats]
@@ -61,10 +94,13 @@ class CameraViews:
     def distrust_background(self) -> None:
         """Clears the background under a newly found body where it may have been learned from that body."""
         for i in self.present:
-            camera = self.each[i]
-            if camera.may_hold_body:
-                camera.background.forget_body(camera.picture, camera.drawn)
-                camera.may_hold_body = False
+            self._distrust_background(i)
+
+    def _distrust_background(self, i: int) -> None:
+        camera = self.each[i]
+        if camera.may_hold_body:
+            camera.background.forget_body(camera.picture, camera.drawn)
+            camera.may_hold_body = False
 
     def forget_background(self, state: MotionState) -> None:
         """Clears the background under a body that was in view when the background was first taken."""

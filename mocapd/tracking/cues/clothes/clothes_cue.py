@@ -125,6 +125,7 @@ class ClothesCue:
         detection are shared among the frame sets until the next.
         """
         self.legs_rest = False
+        self.cameras.set_newcomers_aside()
         if not self._knows_look:
             return None
         if (
@@ -179,7 +180,7 @@ class ClothesCue:
 
     @property
     def _knows_look(self) -> bool:
-        """True if each present camera has a background and an appearance model."""
+        """True if each present camera that is no newcomer has a background and an appearance model."""
         return not self.cameras.are_new and self.cameras.has_appearance
 
     def fit_whole_body(
@@ -262,6 +263,8 @@ class ClothesCue:
         elif is_lost:
             cameras.mark_body(None)
         agrees = found is not None and found.fit.explained >= p.learn_explained
+        if found is not None and agrees and cameras.newcomers:
+            cameras.admit_newcomers(found.motion, self._solver.appearance.merge)
         views: Sequence[View] = ()
         if found is not None and shirt_carries:
             shown = {view.index: view for view in found.views}

@@ -18,6 +18,7 @@ class WearerAppearance:
 
     def __init__(self, fitters: RegionSolverCache, params: ClothesParams) -> None:
         self._fitters, self._params = fitters, params
+        self.merge: RegionMerge = NO_MERGE
         self.solvers: RegionSolvers = fitters.of(NO_MERGE)
 
     @property
@@ -33,12 +34,15 @@ class WearerAppearance:
         """Learns the appearance of a newly found person."""
         self._set_merge(NO_MERGE, cameras)
         cameras.learn_first_appearance(state)
-        appearances = [cameras.each[i].appearance for i in cameras.present]
-        merge = choose_merge(appearances, self._params.alike)
+        # a camera that does not show the person says nothing
+        appearances = [
+            one for i in cameras.present if (one := cameras.each[i].appearance).is_learned
+        ]
+        merge = choose_merge(appearances, self._params.alike) if appearances else NO_MERGE
         for camera in cameras.each:
             camera.appearance.merge_regions(merge)
         self._set_merge(merge, cameras)
 
     def _set_merge(self, merge: RegionMerge, cameras: CameraViews) -> None:
-        self.solvers = self._fitters.of(merge)
+        self.merge, self.solvers = merge, self._fitters.of(merge)
         cameras.fitter = self.solvers.fitter
