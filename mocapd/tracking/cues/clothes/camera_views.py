@@ -279,11 +279,12 @@ class CameraViews:
         return on_outline / max(off_outline, 1e-3)
 
     def seed_background(self) -> None:
-        """Takes everything outside the marked body for the background."""
+        """Takes everything outside the marked body for the background, where none is known yet."""
 
         def seed(i: int) -> None:
             camera = self.each[i]
-            camera.background.seed(camera.picture, camera.body)
+            if camera.background.is_new:
+                camera.background.seed(camera.picture, camera.body)
 
         self._each(seed, self.present)
 

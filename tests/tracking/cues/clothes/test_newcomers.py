@@ -77,6 +77,18 @@ def test_a_camera_that_does_not_show_the_person_stays_aside() -> None:
         views.admit_newcomers(body, NO_MERGE)
 
 
+def test_a_camera_that_comes_later_leaves_the_backgrounds_of_the_others_as_they_are() -> None:
+    views, body = views_and_body(sees=True)
+    learn_body(views, body, {0: 0.0})
+    passer_by = GREY.copy()
+    passer_by[60:200, :60] = 20
+    views.take({0: passer_by, 1: GREY}, BOTH)
+    views.mark_body(body)
+    views.seed_background()
+    assert not views.are_new
+    assert views.each[0].background.mean[100, 30].tolist() == [114.0] * 3
+
+
 def test_where_no_camera_knows_the_person_none_is_left_out() -> None:
     views, _ = views_and_body(sees=True)
     views.take(dict.fromkeys(BOTH, GREY), BOTH)
