@@ -56,6 +56,7 @@ def publish_body(
 ) -> Track:
     """The track at t_ns. motion: the body of `state`, extrapolated to t_ns."""
     away_s = seconds(t_ns - state.t_ns)
+    away_of_joints_s = np.full(N_JOINTS, away_s)
     confidence, uncertainty_m = np.zeros(N_JOINTS), np.full(N_JOINTS, np.inf)
     agreement, unfiltered = np.ones(N_JOINTS), None
     if state.whole is not None and clothes is not None:
@@ -71,6 +72,7 @@ def publish_body(
         by_it = confidence_by_shirt(state.trunk, len(state.cameras), of_trunk_m, away_s)
         lower = _LOWER_JOINTS if state.whole is not None else np.empty(0, np.int64)
         by_it[lower], of_trunk_m[lower] = confidence[lower], uncertainty_m[lower]
+        away_of_joints_s[lower] = seconds(t_ns - state.whole_ns)
         confidence, uncertainty_m = by_it, of_trunk_m
         agreement = np.where(_IS_LOWER, agreement, 1.0)
     assert unfiltered is not None
@@ -92,7 +94,7 @@ def publish_body(
         confidence=confidence * agreement,
         cameras=state.cameras if away_s == 0.0 else (),
         smoothing_lag_ns=nanoseconds(pose_filter.lag_s),
-        uncertainty_m=np.hypot(grow_uncertainty(uncertainty_m, away_s), behind_m),
+        uncertainty_m=np.hypot(grow_uncertainty(uncertainty_m, away_of_joints_s), behind_m),
     )
     carried_by = state.trunk if state.by_shirt else state.whole
     assert carried_by is not None

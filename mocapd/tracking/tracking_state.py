@@ -21,8 +21,8 @@ def confidence_fade(away_s: float) -> float:
     return math.exp(-away_s / FADE_S)
 
 
-def grow_uncertainty(uncertainty_m: Floats, away_s: float) -> Floats:
-    """Uncertainties (J,) [m] after away_s [s] without evidence."""
+def grow_uncertainty(uncertainty_m: Floats, away_s: Floats | float) -> Floats:
+    """Uncertainties (J,) [m] after away_s [s], of all or (J,) of each, without evidence."""
     total_m: Floats = np.hypot(uncertainty_m, DRIFT_M_S * away_s)
     return total_m
 
