@@ -176,3 +176,11 @@ def test_a_joint_is_as_far_off_its_keypoint_as_it_lies_beside_the_ray() -> None:
     off_m = term.off_keypoints_m(moved_m)
     assert 0.1 < off_m[hand] <= 0.12
     assert not np.delete(off_m, hand).max() > 1e-9
+
+
+def test_a_camera_that_shows_no_joint_does_not_hide_that_another_contradicts() -> None:
+    joints_m = posed(ROOT, relaxed()).joints
+    nothing, far = seen_at(joints_m, which=SEEN[:0])[0], seen_at(joints_m, off=1.0)[1]
+    term = JointTerm(BODY, [nothing, far])
+    assert term.worst_off_sds2(joints_m) == JointTerm(BODY, [far]).worst_off_sds2(joints_m) > 10.0
+    assert JointTerm(BODY, [nothing]).worst_off_sds2(joints_m) == 0.0

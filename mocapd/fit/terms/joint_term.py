@@ -123,8 +123,15 @@ class JointTerm:
 
     def worst_off_sds2(self, joints_m: Floats) -> float:
         """Of a body at joints_m (J,3), the median squared Mahalanobis distance of its joints from their rays, in the camera
-        where that is largest."""
-        return max(float(np.median(_mahalanobis2(rays, joints_m)[0])) for rays in self.rays)
+        where that is largest, of those that show joints; 0 if none does."""
+        return max(
+            (
+                float(np.median(_mahalanobis2(rays, joints_m)[0]))
+                for rays in self.rays
+                if len(rays.joints)
+            ),
+            default=0.0,
+        )
 
     def median_spreads_m(self, least_joints: int) -> list[float]:
         """Of each camera, the median over its joints of the standard deviation of their places across the ray [m]; inf with
