@@ -220,7 +220,7 @@ class ClothesCue:
             self._search.on_body(found.motion.root_m, self._pictures.t_ns)
             joints_m, _ = self.fitter.joints(found.motion)
             crossing = not self.fitter.has_small_baseline(found.motion, found.views)
-            self._legs.on_fit(joints_m, self._ticks.last, crossing)
+            self._legs.on_fit(joints_m, self._ticks.last, self._pictures.t_ns, crossing)
         return found
 
     @property

@@ -15,7 +15,7 @@ import numpy as np
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
-from mocapd.clock import nanoseconds
+from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.types import Floats
@@ -46,7 +46,7 @@ class LegSchedule:
     """Counts in ticks. keypoints, look: the cameras' turns at detecting keypoints, and at learning the clothes' look."""
 
     def __init__(self) -> None:
-        self._fitted = _NEVER
+        self._fitted, self._fitted_ns = _NEVER, 0
         self.keypoints, self.look = CameraTurns(), CameraTurns()
         self._places_m, self._is_calm = np.full((len(_JOINTS), 3), np.inf), False
 
@@ -55,12 +55,12 @@ class LegSchedule:
         every += self._is_calm or is_late
         return every > 1 and now - self._fitted < every
 
-    def on_fit(self, joints_m: Floats, now: int, crossing: bool) -> None:
-        """Remembers a fit with joints at joints_m (J,3). crossing: of views that cross."""
-        places_m, took_s = joints_m[_JOINTS], max(now - self._fitted, 1) * TICK_S
+    def on_fit(self, joints_m: Floats, now: int, t_ns: int, crossing: bool) -> None:
+        """Remembers a fit with joints at joints_m (J,3), to a frame set at t_ns. crossing: of views that cross."""
+        places_m, took_s = joints_m[_JOINTS], seconds(t_ns - self._fitted_ns)
         way_m = np.linalg.norm(places_m - self._places_m, axis=1).max()
         self._is_calm = crossing and bool(way_m < _CALM_M_S * took_s)
-        self._places_m, self._fitted = places_m, now
+        self._places_m, self._fitted, self._fitted_ns = places_m, now, t_ns
 
     def turn(self, frame_index: int) -> int:
         """A running number for work that takes turns, of which legs that rest leave none out."""

@@ -3,8 +3,10 @@
 import numpy as np
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.clock import nanoseconds
 from mocapd.fit.fit_params import TICK_S
 from mocapd.tracking.cues.clothes.leg_schedule import CameraTurns, LegSchedule
+from mocapd.tracking.ticks import TickClock
 
 STANDING_M = np.tile(np.arange(3.0), (N_JOINTS, 1))
 
@@ -18,7 +20,7 @@ def fitted_at(
         if not schedule.rests(now, every, late):
             joints_m = STANDING_M.copy()
             joints_m[INDEX["leftFoot"], 0] += foot_m_s * now * TICK_S
-            schedule.on_fit(joints_m, now, crossing)
+            schedule.on_fit(joints_m, now, nanoseconds(now * TICK_S), crossing)
             out.append(now)
     return out
 
@@ -34,6 +36,18 @@ def test_legs_of_a_tracker_that_is_late_rest_in_no_two_frame_sets_on_end() -> No
     assert fitted_at(2.0, late=True) == list(range(0, 12, 2))
     assert np.diff(fitted_at(0.1, late=True)).max() == 2
     assert fitted_at(0.1, crossing=False, late=True) == list(range(0, 12, 2))
+
+
+def test_at_60_hz_legs_are_as_fast_before_they_are_fitted_in_each_frame_set() -> None:
+    schedule, clock, fits = LegSchedule(), TickClock(), 0
+    for k in range(60):
+        now, t_s = clock.pass_to(nanoseconds(k / 60)).last, k / 60
+        if not schedule.rests(now, 1):
+            joints_m = STANDING_M.copy()
+            joints_m[INDEX["leftFoot"], 0] += 0.6 * t_s
+            schedule.on_fit(joints_m, now, nanoseconds(t_s), True)
+            fits += 1
+    assert fits == 60
 
 
 def test_side_by_side_cameras_fit_legs_that_stand_in_each_frame_set() -> None:
@@ -68,6 +82,6 @@ def test_work_that_takes_turns_comes_to_each_turn_while_legs_rest() -> None:
     for now in range(12):
         if not schedule.rests(now, 1):
             turns.append(schedule.turn(now) % 2)
-            schedule.on_fit(STANDING_M, now, True)
+            schedule.on_fit(STANDING_M, now, nanoseconds(now * TICK_S), True)
     assert turns.count(0) >= 2
     assert turns.count(1) >= 2
