@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from mocapd.body.model import BodyModel
+from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.motion_state import MotionState, step_between
 from mocapd.types import Floats
 
@@ -17,7 +18,7 @@ class VelocityParams:
     fastest_rad_s: float = 15.0
     fastest_m_s: float = 4.0
     arm_trust: float = 0.3  # above that, range of the share over which the weight rises to 1
-    hidden_arm_keeps: float = 0.7  # share of its old velocity that an unconfirmed arm keeps
+    hidden_arm_keeps: float = 0.7  # share of its velocity that an unconfirmed arm keeps for a tick
 
 
 def velocity_between(
@@ -40,7 +41,7 @@ def velocity_between(
         # blend measured velocity and decayed old velocity by the arm's visibility
         trust = min(max((share - _UNSEEN) / p.arm_trust, 0.0), 1.0)
         columns = model.space.columns(f"{side}_arm")
-        decayed = p.hidden_arm_keeps * last.velocity[columns]
+        decayed = p.hidden_arm_keeps ** (dt_s / TICK_S) * last.velocity[columns]
         velocity[columns] = trust * velocity[columns] + (1.0 - trust) * decayed
     for columns in jumped:
         velocity[columns] = 0.0
