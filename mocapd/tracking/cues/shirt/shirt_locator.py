@@ -97,11 +97,11 @@ class ShirtLocator:
             return found
         if found is not None:
             better_than = found.fit.match + p.uncertain_gain
-            copies = [  # the search uses the same buffers
+            copies = [  # the search uses the same buffers, and draws other bodies
                 replace(v, ids=v.ids.copy(), pixel_weight=v.pixel_weight.copy())
                 for v in found.views
             ]
-            found = replace(found, views=tuple(copies))
+            found = replace(found, views=tuple(copies), redraw=True)
         detected = self._cue.search(
             wearer, present, t_ns, p.uncertain_pause_s, better_than, frame_index
         )
