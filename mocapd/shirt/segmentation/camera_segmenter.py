@@ -59,6 +59,7 @@ class Memory:
     skin: Floats = field(default_factory=lambda: np.zeros(4))  # see `bare_skin.statistics`
     skin_affine: Singles = field(default_factory=lambda: bare_skin.NOWHERE)
     usual: float = 0.0  # share of the rendered shirt that is usually classified
+    usual_ticks: int = 0  # when that was updated
     ticks: int = 0  # of 1/30 s, that passed
     lights: int = 0  # see `RoomBackground`
 
@@ -163,7 +164,8 @@ class CameraSegmenter:
             return ids, pixel_weight
         inside = agreement(predicted, ids)[1] / rendered
         usual = memory.usual if memory.usual > 0 else inside
-        keep = float(np.exp(-TICK_S / p.usual_s))
+        passed, memory.usual_ticks = memory.ticks - memory.usual_ticks, memory.ticks
+        keep = float(np.exp(-passed * TICK_S / p.usual_s))
         memory.usual = keep * usual + (1.0 - keep) * inside
         if may_relight and (inside < p.poor_classification or inside < p.sudden_loss * usual):
             best = self._relit(predicted, ids, roi, distance, prior)

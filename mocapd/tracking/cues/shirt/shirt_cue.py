@@ -218,14 +218,15 @@ class ShirtCue:
     ) -> ShirtEstimate | None:
         """Searches all pictures for the shirt. The light estimate changes only if a fit has a better match than
         `better_than`; pause_s: until the next search after a failure [s]."""
-        appearances = [segmenter.memory.appearance for segmenter in self.segmenters.each]
+        memories = [segmenter.memory for segmenter in self.segmenters.each]
+        lights = [(memory.appearance, memory.usual) for memory in memories]
         found = self._detect(wearer, present, frame_index)
         if found is not None and found.fit.match > better_than:
             self._next_search_ns = t_ns
             return found
         self._next_search_ns = t_ns + nanoseconds(pause_s)
-        for segmenter, appearance in zip(self.segmenters.each, appearances, strict=True):
-            segmenter.memory.appearance = appearance
+        for memory, light in zip(memories, lights, strict=True):
+            memory.appearance, memory.usual = light
         return None
 
     def _detect(
