@@ -170,7 +170,7 @@ class ClothesCue:
     def _detecting(self, is_new: bool) -> Sequence[int]:
         """The cameras whose keypoints are detected now below the shirt; is_new: the legs were found a moment ago."""
         present, work = self.cameras.present, self._solver.work
-        if not self.alone:  # nothing else says how far away the arms are
+        if not self.alone or len(present) == 1:  # nothing else says how far away the arms are
             return self._legs.keypoints.take(present, self._ticks.last, TICK_S * work.network)
         if not is_new and self._legs.rests(self._ticks.last + 1, work.legs, self._is_late):
             return ()

@@ -34,7 +34,6 @@ class FirstLegs:
         """silhouettes: a fitter whose body has one region."""
         self._silhouettes, self._terms, self._params = silhouettes, terms, params
         self._appearance, self._cameras = appearance, cameras
-        self._enough = min(_CAMERAS, len(cameras.each))
 
     def find(
         self,
@@ -96,7 +95,8 @@ class FirstLegs:
             if not found:
                 return None
             joints = found[0]
-            if joints.cameras_sure_of(LEGS, self._params.first_spread_m).min() < self._enough:
+            sure = joints.cameras_sure_of(LEGS, self._params.first_spread_m)
+            if sure.min() < min(_CAMERAS, len(cameras.present)):
                 return None
             held = (self._terms.floor, joints.trusting)
             pose = fitter.fit(start, (), dt_s, p.iterations, motion=trunk_prior, terms=held).state
