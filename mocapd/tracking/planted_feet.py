@@ -28,6 +28,7 @@ class PlantedFeetParams:
     follows_s: float = 3.0
     far_m: float = 0.05
     high_m: float = 0.06
+    expires_s: float = 1.0  # over which a pose is predicted
 
 
 class PlantedFeet:
@@ -43,6 +44,11 @@ class PlantedFeet:
         self._t_ns: int | None = None
         self._mean_m = np.zeros((2, 2, 2))  # of each foot's joints, along x and z
         self._still_s = np.zeros(2)  # for how long each foot has been there
+
+    def expire(self, t_ns: int) -> None:
+        """Forgets all feet where the last fit is too old at t_ns: the next body is another one, or stands elsewhere."""
+        if self._t_ns is not None and seconds(t_ns - self._t_ns) > self._params.expires_s:
+            self.reset()
 
     @property
     def joints(self) -> Ints:
@@ -62,6 +68,7 @@ class PlantedFeet:
 
     def update(self, joints_m: Floats, t_ns: int) -> None:
         """Updates both feet from the joints (J,3) [m] of a new fit."""
+        self.expire(t_ns)
         p = self._params
         dt_s = 0.0 if self._t_ns is None else seconds(t_ns - self._t_ns)
         self._t_ns = t_ns

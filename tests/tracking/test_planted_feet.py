@@ -49,6 +49,16 @@ def test_feet_that_stay_are_planted_where_they_are(hz: float) -> None:
     assert feet.places_m == pytest.approx(BODY.rest_m[feet.joints][:, [0, 2]])
 
 
+def test_feet_of_a_body_that_was_lost_are_not_planted_for_the_next() -> None:
+    feet = feet_after([(0.6, BODY.rest_m)], 30.0)
+    feet.expire(nanoseconds(1.2))
+    assert len(feet.joints) == 4
+    feet.expire(nanoseconds(10.0))
+    assert len(feet.joints) == 0
+    feet.update(BODY.rest_m, nanoseconds(10.0))
+    assert len(feet.joints) == 0
+
+
 @RATES
 @pytest.mark.parametrize("step_m", [(0.2, 0.0, 0.0), (0.0, 0.15, 0.0)])
 def test_a_foot_that_steps_or_rises_is_free_at_once(

@@ -174,7 +174,7 @@ class ClothesSolver:
         if last is not None:
             arms = confirmed_arms(fitter, last, predicted, views, p)
             motion = prediction_prior(fitter, last, state.motion.velocity, dt_s, *arms, p.motion)
-        planted = self._planted()
+        planted = self._planted(pictures.t_ns)
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
             measured = self.terms.measure(fitter, drawn, shown, pictures.grey, ticks.frame_index)
@@ -229,7 +229,7 @@ class ClothesSolver:
             observed = ClothesObservation(start, views, self.terms.joints.term(self.model, rays))
         if not observed.views:
             return None
-        fitter, planted = self.fitter, self._planted()
+        fitter, planted = self.fitter, self._planted(pictures.t_ns)
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
             measured = self.terms.measure(
@@ -273,8 +273,9 @@ class ClothesSolver:
         )  # fmt: skip
         return self._estimate(ScoredFit(fit, views, ()), None, NEW_BODY_PRIOR_S)
 
-    def _planted(self) -> tuple[Term, ...]:
-        """The term that holds planted feet."""
+    def _planted(self, t_ns: int) -> tuple[Term, ...]:
+        """The term that holds planted feet at t_ns."""
+        self._feet.expire(t_ns)
         joints = self._feet.joints
         if not len(joints):
             return ()
