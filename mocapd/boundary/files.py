@@ -55,11 +55,11 @@ def read_beginning(path: Path, most_bytes: int) -> bytes:
 
 
 def read_text(path: Path, most_bytes: int) -> str:
-    """A file of UTF-8 text. Raises MissingError, or InputError naming the file."""
+    """A file of UTF-8 text, without its byte order mark. Raises MissingError, or InputError naming the file."""
     try:
-        return read_file(path, most_bytes).decode()
+        return read_file(path, most_bytes).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise InputError(f"is no UTF-8 text ({error})", str(path), _FIX) from None
+        raise InputError(f"is no UTF-8 text ({error})", str(path), "save it as UTF-8") from None
 
 
 def user_path(text: str | Path) -> Path:

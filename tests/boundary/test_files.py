@@ -115,8 +115,13 @@ def test_what_lies_in_a_folder_that_may_not_be_entered_is_not_absent(tmp_path: P
 
 def test_text_that_is_no_utf8_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a").write_bytes(b"\xff")
-    with pytest.raises(InputError, match="UTF-8"):
+    with pytest.raises(InputError, match=r"no UTF-8 text .* -- save it as UTF-8"):
         files.read_text(tmp_path / "a", 10)
+
+
+def test_the_byte_order_mark_of_an_editor_is_no_part_of_a_text(tmp_path: Path) -> None:
+    (tmp_path / "a").write_bytes(b"\xef\xbb\xbfport = 1\n")
+    assert files.read_text(tmp_path / "a", 20) == "port = 1\n"
 
 
 def test_the_home_of_nobody_is_refused() -> None:
