@@ -13,6 +13,7 @@ import typer
 import typer.main
 
 from mocapd.cli.care.man_page import man_page
+from mocapd.cli.care.status import NOT_RUNNING, SLOW, UNABLE, UNKNOWN
 from mocapd.cli.command_list import app
 from tests.cli.mocapd_process import COMMAND, mocapd_here
 
@@ -46,6 +47,11 @@ def test_the_page_has_every_command_and_every_option_that_help_shows() -> None:
             if parameter.get_help_record(typer.Context(command)) is not None:
                 assert any(one in page for one in parameter.opts), (name, parameter.opts)
     assert "--variant" not in page  # hidden
+
+
+def test_the_page_has_every_exit_code_of_status() -> None:
+    codes = f"{NOT_RUNNING}, {UNKNOWN}, {UNABLE}, {SLOW}"
+    assert f"\\fB{codes}\\fR\nof status alone" in man_page(app)
 
 
 def test_groff_shows_it_without_a_warning() -> None:

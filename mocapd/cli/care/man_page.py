@@ -16,7 +16,7 @@ _EXIT_CODES = (
     ("0", "done; also after SIGTERM, or when its terminal is closed"),
     ("1", "nobody listens (send-test), or something is bad (doctor)"),
     ("2", "the command line is wrong"),
-    ("3, 4, 150", "of status alone: none is running, one does not answer, one cannot track"),
+    ("3, 4, 150, 151", "of status alone: none is running, one does not answer, cannot track, or is too slow"),
     ("66", "an input is missing or damaged"),
     ("69", "something is unavailable: a port, a camera, a daemon"),
     ("70", "a bug"),
@@ -24,7 +24,7 @@ _EXIT_CODES = (
     ("77", "a right is missing"),
     ("78", "the configuration or a calibration is wrong"),
     ("130", "Ctrl-C"),
-)
+)  # fmt: skip
 _FILES = (
     ("$XDG_CONFIG_HOME/mocapd/config.toml, /etc/mocapd/config.toml", "the configuration; the first that is there"),
     ("$XDG_STATE_HOME/mocapd, $STATE_DIRECTORY", "calibration.toml with its pictures, a setup in progress, keys"),
