@@ -208,6 +208,15 @@ def test_another_instance_is_not_mistaken_for_ours() -> None:
         client.Client(client.Link(running.endpoint, instance="attic", connect_timeout_s=0.0))
 
 
+def test_a_daemon_is_chosen_by_its_configured_name() -> None:
+    link = client.Link(instance="Küche 1")
+    assert link.key == "mocapd/v1/K_che_1/skeleton/0"
+    assert link.rest_key == "mocapd/v1/K_che_1/rest_skeleton/0"
+    assert client.Link().health_key == "mocapd/v1/*/health"
+    with running_sink() as running, pytest.raises(UnavailableError, match="v1/p_c/alive"):
+        client.Client(client.Link(running.endpoint, instance="p/c", connect_timeout_s=0.0))
+
+
 def test_it_waits_for_a_daemon_that_starts_later() -> None:
     port = free_port()
     got: list[client.Body] = []

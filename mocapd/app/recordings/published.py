@@ -113,10 +113,10 @@ _DECODERS: dict[str, Callable[[bytes, str], SkeletonFrame | RestSkeleton | Calib
 def _only_instance(session: zenoh.Session, link: Link) -> str:
     """The name of the only matching daemon. Raises ConfigError for several."""
     with zenoh_call():
-        replies = list(session.liveliness().get(keys.alive(link.instance), timeout=ASK_S))
+        replies = list(session.liveliness().get(keys.alive(link.instance_chunk), timeout=ASK_S))
     names = sorted({str(reply.ok.key_expr).split("/")[-2] for reply in replies if reply.ok})
     if len(names) > 1:
         raise ConfigError(
             f"several daemons are there: {', '.join(names)}", link.endpoint, "choose by --instance"
         )
-    return names[0] if names else link.instance
+    return names[0] if names else link.instance_chunk

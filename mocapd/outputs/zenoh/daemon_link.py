@@ -10,6 +10,7 @@ import zenoh
 from mocapd.bus.zenoh_calls import hold_session, zenoh_call
 from mocapd.bus.zenoh_client_config import client_config
 from mocapd.errors import UnavailableError
+from mocapd.outputs.instance import chunk
 from mocapd.outputs.zenoh import keys
 
 ENDPOINT = "tcp/127.0.0.1:7447"
@@ -22,7 +23,7 @@ class Link:
     """Address of the daemon and selection of its messages.
 
     endpoint: Zenoh endpoint of the daemon, or of the router it joined
-    instance: name of the daemon; `*`: any
+    instance: name of the daemon, as configured or as in its keys; `*`: any
     person: number of the person
     connect_timeout_s: how long to try to find a daemon [s]; None: for ever
     tls_root_ca: PEM file, for a `tls/` endpoint
@@ -43,19 +44,24 @@ class Link:
     typed_options: bool = False
 
     @property
+    def instance_chunk(self) -> str:
+        """The daemon's name as in its keys."""
+        return self.instance if self.instance == keys.ANY else chunk(self.instance)
+
+    @property
     def key(self) -> str:
         """The key of the frames."""
-        return keys.skeleton(self.instance, self.person)
+        return keys.skeleton(self.instance_chunk, self.person)
 
     @property
     def health_key(self) -> str:
         """The key of the health messages."""
-        return keys.health(self.instance)
+        return keys.health(self.instance_chunk)
 
     @property
     def rest_key(self) -> str:
         """The key of the rest skeleton."""
-        return keys.rest_skeleton(self.instance, self.person)
+        return keys.rest_skeleton(self.instance_chunk, self.person)
 
 
 def connect(link: Link) -> zenoh.Session:
@@ -112,7 +118,7 @@ def _attempt(link: Link) -> zenoh.Session:
             # a refused login looks like silence to Zenoh
             + ("; check tls_root_ca, user and password too" if _has_secrets(link) else ""),
         ) from error
-    token = keys.alive(link.instance)
+    token = keys.alive(link.instance_chunk)
     if any(reply.ok for reply in session.liveliness().get(token, timeout=ATTEMPT_S)):
         return session
     with session:
