@@ -11,6 +11,7 @@ from mocapd.control.last_trouble import LastTrouble
 from mocapd.control.reloads import Reloads
 from mocapd.control.status_report import starting_report, status_report
 from mocapd.errors import MocapdError, UnavailableError
+from mocapd.outputs.output_table import OUTPUTS
 from mocapd.service.open_outputs import OpenOutputs
 from mocapd.service.service import Service, Snapshot
 
@@ -85,7 +86,10 @@ class DaemonControl:
                 return status_report(service, self._trouble.newest, self._preparing)
             case "recenter":
                 facing, outputs = service.recenter(), service.snapshot().outputs
-                return Recentered(facing.yaw_deg, tuple(outputs))
+                informed = (name for name, entry in OUTPUTS.items() if entry.uses_facing)
+                return Recentered(
+                    facing.yaw_deg, tuple(name for name in informed if name in outputs)
+                )
             case "reload":
                 return self._reloads.ask()
             case other:

@@ -101,7 +101,8 @@ class OutputEntry:
 
     `blocks`: True if `send` or `send_state` may take longer than two milliseconds: the sink then gets its own thread.
     `unsafe`: one warning for each permitted but unsafe setting. `override_address`: the section with another host
-    (numeric) and port, None: unchanged. `limit_hz`: the output's own highest rate [Hz].
+    (numeric) and port, None: unchanged. `limit_hz`: the output's own highest rate [Hz]. `uses_facing`: True if it
+    uses the forward direction of `mocapd recenter`.
     """
 
     section: Callable[[], OutputSection]
@@ -110,6 +111,7 @@ class OutputEntry:
     unsafe: Callable[[Any], tuple[str, ...]] = _safe
     override_address: Callable[[Any, str | None, int | None], Any] = override_destination
     limit_hz: Callable[[Any], float] = _no_limit
+    uses_facing: bool = False
 
 
 def _zenoh(section: ZenohSection, instance: str) -> Sink:
@@ -149,7 +151,12 @@ OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
         # Drops frames for a slow subscriber. Measured with frames of 3.1 kB: median 0.08 ms to a subscriber that reads,
         # 0.05 ms over 10,000 frames to a stopped one.
         "zenoh": OutputEntry(
-            ZenohSection, _zenoh, blocks=False, unsafe=warnings, override_address=_override_zenoh
+            ZenohSection,
+            _zenoh,
+            blocks=False,
+            unsafe=warnings,
+            override_address=_override_zenoh,
+            uses_facing=True,
         ),
         # Non-blocking sockets and numeric addresses: a full buffer is an error that is counted. Measured: median
         # 0.07 ms, also without a reader.
@@ -163,9 +170,10 @@ OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
             blocks=False,
             unsafe=vrchat_sink.warnings,
             limit_hz=_own_rate,
+            uses_facing=True,
         ),
         # The same socket, one bundle of a constant size.
-        "vmt": OutputEntry(VmtSection, _vmt, blocks=False),
+        "vmt": OutputEntry(VmtSection, _vmt, blocks=False, uses_facing=True),
     }
 )
 

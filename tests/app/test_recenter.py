@@ -16,7 +16,7 @@ from mocapd.control.last_trouble import LastTrouble
 from mocapd.control.reloads import Reloads
 from mocapd.control.socket_place import socket_path
 from mocapd.errors import UnavailableError
-from mocapd.outputs.output_table import VRChatSection
+from mocapd.outputs.output_table import OscSection, VRChatSection
 from mocapd.service.open_outputs import OpenOutputs
 from mocapd.service.service import Service
 from tests.outputs.frames import eventually
@@ -68,14 +68,15 @@ def test_it_turns_vrchat_once(
     listening: Listening, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     section = VRChatSection(listening.destination, enabled=True)
-    config = Config(outputs={"vrchat": section}, state_dir=tmp_path, instance="game")
+    osc = OscSection(("127.0.0.1:9",), enabled=True)  # has no message for the forward direction
+    config = Config(outputs={"osc": osc, "vrchat": section}, state_dir=tmp_path, instance="game")
     with Service(config, session_of("a")) as service, controlled(service, 1):
         for _ in range(5):
             assert not listening.hear()
         recenter()
         assert eventually(listening.hear)
         out = capsys.readouterr()
-        assert "told to: vrchat" in out.out
+        assert out.out.endswith("told to: vrchat\n")
         assert out.err == ""
         for _ in range(10):
             listening.hear()
