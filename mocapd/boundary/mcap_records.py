@@ -21,7 +21,7 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, Schema
 from mcap.writer import MCAP0_MAGIC
 
-from mocapd.boundary.files import is_file
+from mocapd.boundary.files import is_absent, is_file
 from mocapd.errors import InputError, MalformedError
 
 MOST_RECORD_BYTES = 32 << 20  # ours are some MB at most
@@ -176,7 +176,8 @@ _READ = frozenset({Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, 
 
 def _open_file(path: Path) -> BinaryIO:
     if not is_file(path):
-        raise InputError("no such recording", str(path), "check the path")
+        what = "no such recording" if is_absent(path) else "is no regular file"
+        raise InputError(what, str(path), "check the path")
     try:
         return path.open("rb")
     except OSError as error:

@@ -49,6 +49,12 @@ def assert_one_line(outcome: Outcome, code: int, *parts: str | Path) -> None:
         assert str(part) in lines[0]
 
 
+@pytest.mark.parametrize("recording", ["", ".", "/"])
+def test_an_export_of_a_folder(clean_env: dict[str, str], recording: str) -> None:
+    outcome = mocapd_here(clean_env, "export", recording, "--to", "csv")
+    assert_one_line(outcome, 66, "no regular file")
+
+
 def test_a_rig_with_a_missing_field(track: Track, capture: Path) -> None:
     entry = camera_entry("cam0", 0.0)
     del entry["dist"]

@@ -191,6 +191,8 @@ def test_garbage_is_named(tmp_path: Path, data: bytes) -> None:
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such recording"):
         list(RecordingReader(tmp_path / "none.mcap").everything())
+    with pytest.raises(InputError, match="no regular file"):
+        list(RecordingReader(tmp_path).everything())
 
 
 def write_foreign(path: Path, schema: str, data: bytes) -> None:

@@ -66,7 +66,7 @@ def export(
     options = ExportOptions(up.value == "z", legs.value == "all", feet.value == "floor")
     check_options(to, options)
     set_up_logs(effective_config(config, settings).config.log_level)
-    path = out if out is not None else file.with_suffix(f".{to}")
+    path = out if out is not None else file.parent / f"{file.stem}.{to}"
     target = export_file(to, path, force, inputs=(file,))
     target.check()
     recorded = motion_of(RecordingReader(file), person, rate)
