@@ -3,13 +3,15 @@
 Some in a process of their own, whose streams nobody else writes to; the others by the command's entry.
 """
 
+import os
 import socket
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.cli.mocapd_process import Outcome, mocapd, mocapd_here
+from tests.cli.mocapd_process import COMMAND, Outcome, mocapd, mocapd_here
 from tests.cli.small_capture import (
     camera_entry,
     write_capture,
@@ -53,6 +55,37 @@ def assert_one_line(outcome: Outcome, code: int, *parts: str | Path) -> None:
 def test_an_export_of_a_folder(clean_env: dict[str, str], recording: str) -> None:
     outcome = mocapd_here(clean_env, "export", recording, "--to", "csv")
     assert_one_line(outcome, 66, "no regular file")
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_output_to_a_full_disk(clean_env: dict[str, str], unbuffered: str) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [*COMMAND, "version"],
+            env={**clean_env, "PYTHONUNBUFFERED": unbuffered},
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=120.0,
+            check=False,
+        )
+    assert_one_line(Outcome(done.returncode, "", done.stderr), 73, "No space left", "make room")
+
+
+def test_output_to_a_reader_that_is_gone(clean_env: dict[str, str]) -> None:
+    there, gone = os.pipe()
+    os.close(there)
+    with os.fdopen(gone, "w") as pipe:
+        done = subprocess.run(
+            [*COMMAND, "version"],
+            env={**clean_env, "PYTHONUNBUFFERED": ""},
+            stdout=pipe,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=120.0,
+            check=False,
+        )
+    assert (done.returncode, done.stderr) == (1, "")
 
 
 def test_a_rig_with_a_missing_field(track: Track, capture: Path) -> None:

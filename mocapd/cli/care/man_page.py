@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 _EXIT_CODES = (
     ("0", "done; also after SIGTERM, or when its terminal is closed"),
-    ("1", "nobody listens (send-test), or something is bad (doctor)"),
+    ("1", "nobody listens (send-test), something is bad (doctor), or the reader of a pipe has ended"),
     ("2", "the command line is wrong"),
     ("3, 4, 150, 151", "of status alone: none is running, one does not answer, cannot track, or is too slow"),
     ("66", "an input is missing or damaged"),
     ("69", "something is unavailable: a port, a camera, a daemon"),
     ("70", "a bug"),
-    ("73", "a file cannot be written"),
+    ("73", "a file or the output cannot be written"),
     ("77", "a right is missing"),
     ("78", "the configuration or a calibration is wrong"),
     ("130", "Ctrl-C"),
