@@ -1,6 +1,7 @@
 """`mocapd send-test`: to whatever output there is, and whether anybody listens."""
 
 import json
+import re
 import socket
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -120,6 +121,19 @@ def test_where_nobody_listens_it_says_so_and_the_code_is_1(
     kind = socket.SOCK_STREAM if output == "zenoh" else socket.SOCK_DGRAM
     assert code_of(output=output, port=free_port(kind)) == 1
     assert "nobody listens" in capsys.readouterr().out
+
+
+def test_the_frames_of_several_destinations_are_counted_together(
+    code_of: Command,
+    listening: socket.socket,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    there = f"127.0.0.1:{listening.getsockname()[1]}"
+    monkeypatch.setenv("MOCAPD_OSC_DESTINATIONS", f'["{there}", "{there}"]')
+    assert code_of(output="osc") == 0
+    sent, wanted = re.findall(r"\d+", capsys.readouterr().out)[:2]
+    assert sent == wanted
 
 
 def test_a_subscriber_gets_it_over_zenoh(code_of: Command) -> None:
