@@ -17,7 +17,7 @@ import pytest
 import zenoh
 
 from mocapd import client, clock
-from mocapd.errors import InputError, UnavailableError
+from mocapd.errors import ConfigError, InputError, UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.wire import SkeletonFrame
 from tests.outputs.frames import eventually, free_port, small_frame, whole_frame
@@ -191,6 +191,12 @@ def test_options_are_named_as_they_are_typed() -> None:
     link = client.Link(f"tcp/127.0.0.1:{free_port()}", connect_timeout_s=0.0, typed_options=True)
     with pytest.raises(UnavailableError, match=r"start `mocapd run` or pass --endpoint$"):
         client.Client(link)
+
+
+@pytest.mark.parametrize("endpoint", ["127.0.0.1:7447", "http://pc:7447", "pc", ""])
+def test_what_is_no_endpoint_is_not_waited_for(endpoint: str) -> None:
+    with pytest.raises(ConfigError, match=r"no Zenoh endpoint -- write .*tcp/127\.0\.0\.1:7447"):
+        client.Client(client.Link(endpoint, connect_timeout_s=None))
 
 
 def test_a_zenoh_router_without_mocapd_is_told_from_nothing() -> None:

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import re
 import time
 from dataclasses import dataclass
 
@@ -9,12 +10,13 @@ import zenoh
 
 from mocapd.bus.zenoh_calls import hold_session, zenoh_call
 from mocapd.bus.zenoh_client_config import client_config
-from mocapd.errors import UnavailableError
+from mocapd.errors import ConfigError, UnavailableError
 from mocapd.outputs.instance import chunk
 from mocapd.outputs.zenoh import keys
 
 ENDPOINT = "tcp/127.0.0.1:7447"
 RETRY_S = 0.2  # pause between two attempts to connect [s]
+_ENDPOINT = re.compile(r"[a-z][a-z0-9_-]*/.")
 ATTEMPT_S = 1.0  # how long one attempt may take [s]
 
 
@@ -67,7 +69,7 @@ class Link:
 def connect(link: Link) -> zenoh.Session:
     """Opens a session on which a mocapd is alive, for callers with their own subscribers; retries until the timeout.
 
-    Raises UnavailableError.
+    Raises UnavailableError; ConfigError for what is no endpoint.
     """
     started_s = time.monotonic()
     while True:
@@ -98,6 +100,12 @@ def _is_over(link: Link, started_s: float) -> bool:
 
 
 def _attempt(link: Link) -> zenoh.Session:
+    if not _ENDPOINT.match(link.endpoint):
+        raise ConfigError(
+            f"{link.endpoint!r} is no Zenoh endpoint",
+            _option(link, "endpoint").rstrip("="),
+            "write PROTOCOL/HOST:PORT, such as tcp/127.0.0.1:7447",
+        )
     limit_s = link.connect_timeout_s
     config = client_config(
         link.endpoint,
