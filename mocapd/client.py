@@ -125,6 +125,7 @@ class Client:
         self._health: Health | None = None
         self._rest_key = link.rest_key
         self._predictor: PosePredictor | None = None  # created by the first `predict`
+        self._newest_body: Body | None = None
         # a thread that waits in Zenoh would abort the process at exit
         atexit.register(self.close)
 
@@ -151,6 +152,8 @@ class Client:
         """
         if self._predictor is None:
             self._predictor = PosePredictor()
+            if self._newest_body is not None:
+                self._predictor.take(self._newest_body.frame)
         self.poll()
         unix_ns = time.time_ns() if to_time is None else round(to_time * 1e9)
         frame = self._predictor.at(unix_ns)
@@ -195,12 +198,11 @@ class Client:
         return list(iter(self._subscriber.try_recv, None))
 
     def _newest(self, samples: list[zenoh.Sample]) -> Body | None:
-        if self._predictor is None:
-            return _body(samples[-1]) if samples else None
         body = None
-        for sample in samples:
-            body = _body(sample)
-            self._predictor.take(body.frame)
+        for sample in samples if self._predictor is not None else samples[-1:]:
+            body = self._newest_body = _body(sample)
+            if self._predictor is not None:
+                self._predictor.take(body.frame)
         return body
 
     def close(self) -> None:

@@ -64,6 +64,15 @@ def test_a_game_predicts_a_motion_that_goes_on() -> None:
         assert distance_m(ahead.frame, truth, "leftHand") < 0.3 * held_m
 
 
+def test_a_game_that_already_has_a_body_predicts_from_it() -> None:
+    with running_sink() as running, client.Client(client.Link(running.endpoint)) as game:
+        running.heard()
+        running.sink.send(frame_at(0.0, swinging, walking))
+        body = game.wait(30.0)
+        assert body is not None
+        assert game.predict(0.0) == body
+
+
 def _has_come(game: client.Client, seq: int) -> bool:
     body = game.predict(0.0)
     return body is not None and body.seq == seq
