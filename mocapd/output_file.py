@@ -82,9 +82,8 @@ class OutputFile:
         except MissingError:
             return  # removed meanwhile
         except InputError as error:
-            raise CannotCreateError(
-                f"is there already, and {error.what}", path, elsewhere
-            ) from None
+            there = "is there already, and " if os.path.lexists(path) else ""
+            raise CannotCreateError(f"{there}{error.what}", path, elsewhere) from None
         is_kind = not head or self.kind.begins_so(head)
         is_spared = in_input and not is_kind
         if self.force and not is_spared:

@@ -126,3 +126,9 @@ def test_what_comes_while_the_file_is_written_stays(tmp_path: Path) -> None:
 def test_a_folder_that_is_not_there_is_told_before_the_work(tmp_path: Path) -> None:
     with pytest.raises(CannotCreateError, match="cannot be written"):
         OutputFile(tmp_path / "none" / "out.pdf", PDF).check()
+
+
+def test_a_name_that_is_too_long_is_not_said_to_be_there(tmp_path: Path) -> None:
+    with pytest.raises(CannotCreateError, match="File name too long") as caught:
+        OutputFile(tmp_path / ("x" * 300), PDF).check()
+    assert "is there already" not in str(caught.value)
