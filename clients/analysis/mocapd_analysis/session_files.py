@@ -12,6 +12,7 @@ import numpy as np
 from mocapd.body.bones import PARENT_OF
 from mocapd.boundary.files import is_file
 from mocapd.errors import InputError
+from mocapd.outputs.frame_times import frame_times_ns
 from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.types import Floats, Ints
@@ -155,7 +156,7 @@ def _of_frames(
         session = checked_session(
             path.stem,
             names,
-            np.array([frame.capture_unix_ns - start_ns for frame in same]) * 1e-9,
+            (np.array(frame_times_ns(same)) - start_ns) * 1e-9,
             np.array([[one.p for one in each] for each in joints], dtype=float),
             np.array([[one.c for one in each] for each in joints], dtype=float),
             notes,

@@ -9,13 +9,13 @@ import numpy as np
 
 from mocapd.errors import InputError
 from mocapd.exports.sampled_motion import SampledMotion, Samples, resample, usual_rate_hz
+from mocapd.outputs.frame_times import frame_times_ns
 from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.wire import SkeletonFrame
 from mocapd.types import Skeleton
 
 _MOST_JOINTS = 255
-_CLOCK_SET_NS = 1_000_000  # difference of both clocks' steps beyond which the Unix clock was set
 _NAME = re.compile(r"[!-~]{1,64}")
 
 
@@ -33,8 +33,7 @@ class Exported:
 def motion_of(reader: RecordingReader, person: int, rate_hz: float | None) -> Exported:
     """One person's motion; `rate_hz` None takes that of the recording. Raises InputError."""
     rest: RestSkeleton | None = None
-    frames: list[SkeletonFrame] = []
-    times_ns: list[int] = []
+    tracked: list[SkeletonFrame] = []
     persons: set[int] = set()
     lost = 0
     for item in reader.everything():
@@ -43,24 +42,24 @@ def motion_of(reader: RecordingReader, person: int, rate_hz: float | None) -> Ex
         if isinstance(item, RestSkeleton) and item.person == person:
             rest = item  # the last one has the best estimate of the body
         elif isinstance(item, SkeletonFrame) and item.person == person:
-            if not item.joints:
+            if item.joints:
+                tracked.append(item)
+            else:
                 lost += 1
-            elif not frames:
-                frames.append(item)
-                times_ns.append(item.capture_unix_ns)
-            elif (step_ns := _step_ns(frames[-1], item)) > 0:
-                frames.append(item)
-                times_ns.append(times_ns[-1] + step_ns)
     place = str(reader.path)
     if rest is None:
         others = ", ".join(map(str, sorted(persons - {person})))
         fix = f"choose one of it with --person: {others}" if others else "record it again"
         raise InputError(f"has no rest skeleton of person {person}", place, fix)
     skeleton = _skeleton(rest, place)
-    timed = [
-        pair for pair in zip(times_ns, frames, strict=True) if tuple(pair[1].joints) == rest.names
+    times_ns = frame_times_ns(tracked)
+    in_order = [
+        (t_ns, frame)
+        for t_ns, frame, last_ns in zip(times_ns, tracked, [-1, *times_ns], strict=False)
+        if t_ns > last_ns
     ]
-    other_skeleton = len(frames) - len(timed)
+    timed = [pair for pair in in_order if tuple(pair[1].joints) == rest.names]
+    other_skeleton = len(in_order) - len(timed)
     if not timed:
         raise InputError(f"person {person} is tracked nowhere in it", place, "record it again")
     samples = _samples(*zip(*timed, strict=True))
@@ -70,18 +69,6 @@ def motion_of(reader: RecordingReader, person: int, rate_hz: float | None) -> Ex
     except InputError as error:
         raise InputError(error.what, place, error.fix) from None
     return Exported(motion, len(samples.times_ns), lost, other_skeleton)
-
-
-def _step_ns(before: SkeletonFrame, after: SkeletonFrame) -> int:
-    """Unix time from one frame to the next [ns], unless that clock was set; 0 if they are out of order.
-
-    The monotonic clock cannot be set, but starts again with the daemon's machine.
-    """
-    unix_ns = after.capture_unix_ns - before.capture_unix_ns
-    monotonic_ns = after.capture_monotonic_ns - before.capture_monotonic_ns
-    was_set = abs(unix_ns - monotonic_ns) > _CLOCK_SET_NS
-    steps_ns = (unix_ns, monotonic_ns) if was_set else (unix_ns,)
-    return min((step_ns for step_ns in steps_ns if step_ns > 0), default=0)
 
 
 def _samples(times_ns: Sequence[int], frames: Sequence[SkeletonFrame]) -> Samples:

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -49,6 +50,19 @@ def test_a_track_is_read(tmp_path: Path) -> None:
     # the legs of this motion never bend, and are told so
     assert any("knees never bend" in note for note in session.notes)
     assert not session.is_seen("leftFoot").any()
+
+
+def test_a_clock_that_is_set_neither_costs_frames_nor_adds_time(tmp_path: Path) -> None:
+    frames = [
+        msgspec.structs.replace(one, capture_unix_ns=one.capture_unix_ns - 3600 * 10**9)
+        if one.seq >= 60
+        else one
+        for one in recorded.frames(2.0)
+    ]
+    session = read_session(recorded.record(tmp_path / "a.mcap", frames))
+    assert len(session.times_s) == 120
+    assert session.times_s[-1] == pytest.approx(2.0, abs=0.05)
+    assert not any("left out" in note for note in session.notes)
 
 
 def test_a_recording_cut_short_is_read_to_there_and_told(tmp_path: Path) -> None:
