@@ -13,6 +13,10 @@ from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.types import Floats
 
 OFFSET = 4
+# limits above which the user gets a warning
+_SHIFT_MM, _TURN_DEG = 3.0, 1.0
+_LEAST_SIGMAS = 3.0  # smaller deviations may be chance
+_UNKNOWN_MM = 3.0  # standard deviation of the shift or of the thickness
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,16 +65,6 @@ def usual_back(board_m: Floats, prior: GluingPrior | None = None) -> BackPrint:
 
 
 @dataclass(frozen=True, slots=True)
-class GluingLimits:
-    """Thresholds above which the user gets a warning."""
-
-    shift_mm: float = 3.0
-    turn_deg: float = 1.0
-    least_sigmas: float = 3.0  # smaller deviations may be chance
-    unknown_mm: float = 3.0  # standard deviation of the shift or of the thickness
-
-
-@dataclass(frozen=True, slots=True)
 class Gluing:
     """The measured gluing of the back; the module's docstring gives the directions.
 
@@ -109,14 +103,11 @@ def gluing_of(back: BackPrint, deviation: Floats) -> Gluing:
     )
 
 
-def gluing_trouble(gluing: Gluing, limits: GluingLimits | None = None) -> str:
+def gluing_trouble(gluing: Gluing) -> str:
     """A warning and its remedy; "" where the gluing is good and measured precisely."""
-    limits = limits or GluingLimits()
     shift_mm = float(np.hypot(gluing.right_mm, gluing.down_mm))
-    shifted = shift_mm > max(limits.shift_mm, limits.least_sigmas * gluing.shift_deviation_mm)
-    turned = abs(gluing.clockwise_deg) > max(
-        limits.turn_deg, limits.least_sigmas * gluing.turn_deviation_deg
-    )
+    shifted = shift_mm > max(_SHIFT_MM, _LEAST_SIGMAS * gluing.shift_deviation_mm)
+    turned = abs(gluing.clockwise_deg) > max(_TURN_DEG, _LEAST_SIGMAS * gluing.turn_deviation_deg)
     if shifted or turned:
         return (
             f"the back of the board is not glued in register with its front: it lies {gluing}. The cameras "
@@ -124,7 +115,7 @@ def gluing_trouble(gluing: Gluing, limits: GluingLimits | None = None) -> str:
             "use the board with other programs"
         )
     unknown_mm = max(gluing.shift_deviation_mm, gluing.thickness_deviation_mm)
-    if unknown_mm > limits.unknown_mm:
+    if unknown_mm > _UNKNOWN_MM:
         return (
             f"how the back of the board lies on its front is known to {unknown_mm:.0f} mm only, and so are "
             "the cameras that see the one to those that see the other: turn the board over, and tilt "

@@ -1,7 +1,7 @@
 """Sightings: instants in which several cameras show the board at rest; the input of the extrinsics."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -13,29 +13,18 @@ from mocapd.types import Floats
 
 Views = Mapping[str, Mapping[int, BoardView]]
 
-
-@dataclass(frozen=True, slots=True)
-class SightingParams:
-    """most_motion: of corners [parts of the picture's width per 1/30 s]; most_spread_s: between the cameras'
-    pictures. Together they limit the error of pictures at different times to a third of a pixel."""
-
-    most_motion: float = 0.0012
-    most_spread_s: float = 0.02
-    new_place: float = 0.12  # distance from the other sightings of two cameras [picture widths]
-    most: int = 16  # of one pair of cameras
+# Together these two limit the error of pictures at different times to a third of a pixel.
+_MOST_MOTION = 0.0012  # of corners [parts of the picture's width per 1/30 s]
+_MOST_SPREAD_S = 0.02  # between the cameras' pictures
+_NEW_PLACE = 0.12  # distance from the other sightings of two cameras [picture widths]
+_MOST = 16  # of one pair of cameras
 
 
 class BoardSightings:
     """The board's views by camera and index; views of one index are of one instant."""
 
-    def __init__(
-        self,
-        sizes_px: Mapping[str, tuple[int, int]],
-        board_m: Floats,
-        params: SightingParams | None = None,
-    ) -> None:
+    def __init__(self, sizes_px: Mapping[str, tuple[int, int]], board_m: Floats) -> None:
         self._sizes_px, self._board_m = sizes_px, board_m
-        self._params = params or SightingParams()
         self._views: dict[str, dict[int, BoardView]] = {name: {} for name in sizes_px}
         self._places: dict[tuple[str, str], list[Floats]] = {
             pair: [] for pair in combinations(sorted(sizes_px), 2)
@@ -74,18 +63,18 @@ class BoardSightings:
 
     def still(self, name: str, observation: BoardObservation) -> bool:
         """Whether the board is at rest in this camera."""
-        return observation.motion_px <= self._params.most_motion * self._sizes_px[name][0]
+        return observation.motion_px <= _MOST_MOTION * self._sizes_px[name][0]
 
     def still_px(self) -> dict[str, float]:
         """By camera the largest motion of a board at rest [px per 1/30 s]."""
-        return {name: self._params.most_motion * size[0] for name, size in self._sizes_px.items()}
+        return {name: _MOST_MOTION * size[0] for name, size in self._sizes_px.items()}
 
     def offer(self, instant: BoardInstant) -> bool:
         """Keep the instant if two cameras show the board at rest at a new place."""
         now = instant.observations
         still = sorted(name for name in now if self.still(name, now[name]))
         times = [now[name].t_ns for name in still]
-        if len(still) < 2 or max(times) - min(times) > self._params.most_spread_s * 1e9:
+        if len(still) < 2 or max(times) - min(times) > _MOST_SPREAD_S * 1e9:
             return False
         places = {name: self._place(name, now[name].view) for name in still}
         new = []
@@ -95,9 +84,9 @@ class BoardSightings:
                 continue
             place = np.concatenate([at_a, at_b])
             before = self._places[a, b]
-            if self._new[a, b] >= self._params.most:
+            if self._new[a, b] >= _MOST:
                 continue
-            if not before or np.linalg.norm(before - place, axis=1).min() >= self._params.new_place:
+            if not before or np.linalg.norm(before - place, axis=1).min() >= _NEW_PLACE:
                 new.append(((a, b), place))
         if not new:
             return False

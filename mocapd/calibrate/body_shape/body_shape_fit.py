@@ -12,7 +12,13 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import local_from_global, standard_skeleton
-from mocapd.calibrate.self_calibration.body_rows import BodyRows, RowGatherer
+from mocapd.calibrate.self_calibration.body_rows import (
+    BodyRows,
+    RowGatherer,
+    cost_of,
+    least_match_of,
+    pictured,
+)
 from mocapd.clock import seconds
 from mocapd.errors import InputError
 from mocapd.fit.fit_params import FitParams
@@ -29,25 +35,18 @@ from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.base import Track
 from mocapd.types import Camera, Floats, FrameSet
 
-_PIXEL_WEIGHT = 255  # of unclassified pixels: less would let the body grow beyond its picture
 _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
-
-
-@dataclass(frozen=True, slots=True)
-class ShapeParams:
-    """Parameters of the solver."""
-
-    rounds: int = 8
-    averaged: int = 4  # last rounds: steps end in the noise of whole pixels
-    settling: int = 4  # iterations of every pose before the first round
-    radius_px: int = 7  # work px, search radius for colours: the poses are nearly right
-    loose_s: float = 0.1  # weight of a pose's prior, as of a prediction over this time
-    joint_sd_rad: float = 0.5  # how far a pose may yield to a change of shape
-    least_match: float = 0.6  # of an inlier observation
-    tolerated_cost: float = 1.5  # of an inlier, relative to the median cost
-    fewest_observations: int = 6
-    # weight of all observations relative to the prior of people's shapes: their errors are correlated
-    independent_observations: float = 32.0
+_ROUNDS = 8
+_AVERAGED = 4  # last rounds: steps end in the noise of whole pixels
+_SETTLING = 4  # iterations of every pose before the first round
+_RADIUS_PX = 7  # work px, search radius for colours: the poses are nearly right
+_LOOSE_S = 0.1  # weight of a pose's prior, as of a prediction over this time
+_JOINT_SD_RAD = 0.5  # how far a pose may yield to a change of shape
+_LEAST_MATCH = 0.6  # of an inlier observation
+_TOLERATED_COST = 1.5  # of an inlier, relative to the median cost
+_FEWEST_OBSERVATIONS = 6
+# weight of all observations relative to the prior of people's shapes: their errors are correlated
+_INDEPENDENT_OBSERVATIONS = 32.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,10 +88,8 @@ def observe_body(
     views = []
     for name, ids in track.evidence.items():
         i = index[name]
-        x0, y0, x1, y1 = (edge // work[i] for edge in track.roi_px[name])
         late_s = seconds(frames.frames[name].t_ns - body.t_ns)
-        pixel_weight = np.full(ids.shape, _PIXEL_WEIGHT, np.uint8)
-        views.append(View(i, (x0, y0, x1, y1), ids, pixel_weight, late_s))
+        views.append(pictured(i, ids, track.roi_px[name], work[i], late_s))
     local = local_from_global(standard_skeleton(model.stature_m), body.pose.quats_xyzw)
     velocity = np.zeros(model.n_pose)
     if before is not None:
@@ -110,35 +107,31 @@ def observe_body(
 
 
 def fit_shape(
-    observations: Sequence[BodyObservation],
-    model: BodyModel,
-    cameras: Sequence[Camera],
-    params: ShapeParams | None = None,
+    observations: Sequence[BodyObservation], model: BodyModel, cameras: Sequence[Camera]
 ) -> ShapeFit:
     """The proportions that agree best with all observations. Raises InputError when too few agree."""
-    p = params if params is not None else ShapeParams()
     tracker = FitParams()
     scales = image_scales(cameras, tracker.work_width_px)
     fitter = Fitter(model, shirt_labels(model), cameras, scales, tracker)
-    gatherer = RowGatherer(fitter, p.radius_px)
-    if len(observations) < p.fewest_observations:
-        raise _too_few(len(observations), p)
+    gatherer = RowGatherer(fitter, _RADIUS_PX)
+    if len(observations) < _FEWEST_OBSERVATIONS:
+        raise _too_few(len(observations))
     states = [
-        fitter.fit(m.state, m.views, p.loose_s, p.settling, learn_shape=True).state
+        fitter.fit(m.state, m.views, _LOOSE_S, _SETTLING, learn_shape=True).state
         for m in observations
     ]
     factors = np.median([state.factors for state in states], axis=0)
     rounds: list[Floats] = []
-    for i in range(p.rounds + 1):
+    for i in range(_ROUNDS + 1):
         states = [replace(state, factors=factors) for state in states]
         rows = [
             [gatherer.gather(state, view) for view in m.views]
             for state, m in zip(states, observations, strict=True)
         ]
         # before the first steps a wearer of unusual proportions matches no picture well
-        counted = _inliers(rows, p, p.least_match if i == p.rounds else 0.0)
-        evidence = _Evidence(rows, counted, model, p)
-        if i == p.rounds:
+        counted = _inliers(rows, _LEAST_MATCH if i == _ROUNDS else 0.0)
+        evidence = _Evidence(rows, counted, model)
+        if i == _ROUNDS:
             break
         step = evidence.step(factors)
         states = [
@@ -147,13 +140,13 @@ def fit_shape(
         ]
         factors = np.clip(factors + step, _SMALLEST, _LARGEST)
         rounds.append(factors)
-        if i == p.rounds - 1:
-            factors = np.mean(rounds[-p.averaged :], axis=0)
+        if i == _ROUNDS - 1:
+            factors = np.mean(rounds[-_AVERAGED:], axis=0)
     return ShapeFit(
         factors,
         factors + np.linalg.solve(evidence.H + 1e-3 * np.eye(model.n_shape), evidence.b),
         evidence.H,
-        float(np.mean([_match(rows[k]) for k in counted])),
+        float(np.mean([least_match_of(rows[k]) for k in counted])),
         tuple(states),
         tuple(counted),
     )
@@ -170,13 +163,12 @@ class _Evidence:
         rows: Sequence[Sequence[BodyRows]],
         counted: Sequence[int],
         model: BodyModel,
-        p: ShapeParams,
     ) -> None:
         n, n_shape = model.n_pose, model.n_shape
         self.H, self.b = np.zeros((n_shape, n_shape)), np.zeros(n_shape)
         self._prior = 1.0 / model.space.factor_sd**2
         self.follows: list[_Follow | None] = [None] * len(rows)
-        held = np.full(n, 1.0 / p.joint_sd_rad**2)
+        held = np.full(n, 1.0 / _JOINT_SD_RAD**2)
         held[:6] = 1e-3  # root and hips are free
         for k in counted:
             H = np.sum([row.H for row in rows[k]], axis=0)
@@ -188,7 +180,7 @@ class _Evidence:
             self.H += H[n:, n:] - Hps.T @ back
             self.b += b[n:] - Hps.T @ own
             self.follows[k] = back, own
-        gain = min(1.0, p.independent_observations / len(counted))
+        gain = min(1.0, _INDEPENDENT_OBSERVATIONS / len(counted))
         self.H, self.b = self.H * gain, self.b * gain
 
     def step(self, factors: Floats) -> Floats:
@@ -208,34 +200,23 @@ def _follow_shape(
     return replace(state, root_m=root, local_xyzw=local)
 
 
-def _inliers(rows: Sequence[Sequence[BodyRows]], p: ShapeParams, least_match: float) -> list[int]:
+def _inliers(rows: Sequence[Sequence[BodyRows]], least_match: float) -> list[int]:
     """The observations in which body and pictures agree. Raises InputError for too few."""
-    costs = [_cost(observation) for observation in rows]
-    tolerable = p.tolerated_cost * float(np.median(costs))
+    costs = [cost_of(observation) for observation in rows]
+    tolerable = _TOLERATED_COST * float(np.median(costs))
     counted = [
         k
         for k, observation in enumerate(rows)
-        if _match(observation) >= least_match and costs[k] <= tolerable
+        if least_match_of(observation) >= least_match and costs[k] <= tolerable
     ]
-    if len(counted) < p.fewest_observations:
-        raise _too_few(len(counted), p)
+    if len(counted) < _FEWEST_OBSERVATIONS:
+        raise _too_few(len(counted))
     return counted
 
 
-def _too_few(count: int, p: ShapeParams) -> InputError:
+def _too_few(count: int) -> InputError:
     return InputError(
-        f"body and pictures agree in {count} moments only, {p.fewest_observations} are needed",
+        f"body and pictures agree in {count} moments only, {_FEWEST_OBSERVATIONS} are needed",
         "body",
         "check the colours, then stand where all cameras see the whole shirt and measure again",
     )
-
-
-def _cost(observation: Sequence[BodyRows]) -> float:
-    """Cost for each drawn pixel of the shirt."""
-    drawn = sum(float(row.visible.sum()) for row in observation)
-    return sum(row.cost for row in observation) / max(drawn, 1.0)
-
-
-def _match(observation: Sequence[BodyRows]) -> float:
-    """The confirmed share of the drawn shirt, in the camera that confirms least."""
-    return min(row.match for row in observation)

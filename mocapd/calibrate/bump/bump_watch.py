@@ -5,7 +5,6 @@ of both views, and a roll, too. The room's fixed points show it in each camera a
 view. See docs/decisions/calibration.md.
 """
 
-from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -14,6 +13,11 @@ from mocapd.calibrate.bump.landmark_memory import LandmarkMemory
 from mocapd.clock import nanoseconds
 from mocapd.geometry import rotations
 from mocapd.types import Bytes, Floats
+
+_LEAST_TURN_DEG = 0.4  # of a bump: 2 cm at 3 m; that of a camera at rest is measured to 0.1
+_LASTING_S = 1.5  # debounce: leaning against the table is no bump
+_BLIND_S = 10.0  # without enough marks for so long, the mounting is unknown
+_RENEWED_S = 10.0  # interval at which a view in the present light replaces the latest one
 
 
 class Mounting(StrEnum):
@@ -26,25 +30,14 @@ class Mounting(StrEnum):
     SWAPPED = "swapped"
 
 
-@dataclass(frozen=True, slots=True)
-class BumpParams:
-    """Thresholds of a bump."""
-
-    least_turn_deg: float = 0.4  # 2 cm at 3 m; that of a camera at rest is measured to 0.1
-    lasting_s: float = 1.5  # debounce: leaning against the table is no bump
-    blind_s: float = 10.0  # without enough marks for so long, the mounting is unknown
-    renewed_s: float = 10.0  # interval at which a view in the present light replaces the latest one
-
-
 class BumpWatch:
     """Watches one camera; needs a picture about once a second.
 
     The first pictures define the camera's pose: make a new instance after calibrating the room again.
     """
 
-    def __init__(self, memory: LandmarkMemory, params: BumpParams | None = None) -> None:
+    def __init__(self, memory: LandmarkMemory) -> None:
         self._memory = memory
-        self._p = params if params is not None else BumpParams()
         self._renewed_ns = 0
         self._recognised_ns = 0
         self._seems = Mounting.UNKNOWN  # in the latest picture, and since when
@@ -72,12 +65,12 @@ class BumpWatch:
     def remember_unrecognised(self, t_ns: int, pixels: Bytes) -> None:
         """Add a picture that is certainly this camera's to the memory, for the present light, after a long time without
         recognition."""
-        if self._is_blind and t_ns - self._renewed_ns >= nanoseconds(self._p.renewed_s):
+        if self._is_blind and t_ns - self._renewed_ns >= nanoseconds(_RENEWED_S):
             self._renewed_ns = t_ns
             self._memory.add_unrecognised(pixels)
 
     def _look_unrecognised(self, t_ns: int, pixels: Bytes) -> None:
-        self._is_blind = t_ns - self._recognised_ns > nanoseconds(self._p.blind_s)
+        self._is_blind = t_ns - self._recognised_ns > nanoseconds(_BLIND_S)
         if self._is_blind:
             self.mounting = self._seems = Mounting.UNKNOWN
         if self._memory.has_begun and (self._is_confirmed or not self._is_blind):
@@ -88,16 +81,16 @@ class BumpWatch:
 
     def _judge(self, t_ns: int) -> None:
         """Debounce: a state that lasts long enough becomes the mounting."""
-        limit_deg = self._p.least_turn_deg
+        limit_deg = _LEAST_TURN_DEG
         if self.mounting is Mounting.BUMPED:
             limit_deg *= 0.5
         seems = Mounting.BUMPED if self.turn_deg > limit_deg else Mounting.STEADY
         if seems is not self._seems:
             self._seems, self._since_ns = seems, t_ns
-        if t_ns - self._since_ns >= nanoseconds(self._p.lasting_s):
+        if t_ns - self._since_ns >= nanoseconds(_LASTING_S):
             self.mounting, self._is_confirmed = seems, True
 
     def _renew(self, t_ns: int, pixels: Bytes, turned: Floats) -> None:
-        if t_ns - self._renewed_ns >= nanoseconds(self._p.renewed_s):
+        if t_ns - self._renewed_ns >= nanoseconds(_RENEWED_S):
             self._renewed_ns = t_ns
             self._memory.renew(pixels, turned)

@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
-from mocapd.calibrate.bump.changed_places import PlacesParams, PlacesVerdict, places_of
+from mocapd.calibrate.bump.changed_places import PlacesVerdict, places_of
 from mocapd.clock import nanoseconds
 from mocapd.types import Camera, Frame
 
@@ -44,14 +44,11 @@ class _Pair:
 class SwappedCameras:
     """Collects the evidence, and decides which cameras are swapped. One thread gives evidence; any may query."""
 
-    def __init__(self, cameras: Sequence[Camera], params: PlacesParams | None = None) -> None:
-        self._params = params
+    def __init__(self, cameras: Sequence[Camera]) -> None:
         self._pairs = [_Pair(pair) for pair in combinations(cameras, 2)]
         self._shows: dict[str, str] = {}  # by camera, the other one whose room it shows
         self._sure: frozenset[str] = frozenset()  # cameras for which one side is enough
-        self._mixed: frozenset[str] = (
-            frozenset()
-        )  # more than two that are exchanged among each other
+        self._mixed: frozenset[str] = frozenset()  # of groups of more than two, all exchanged
 
     def misplaced_with(self, camera: str) -> str | None:
         """The camera whose calibration fits this one's pictures, by points or people: its memory is of the wrong
@@ -100,7 +97,7 @@ class SwappedCameras:
                 continue
             pair.looks += 1
             pair.next_ns = first.t_ns + nanoseconds(_AGAIN_S)
-            places = places_of(pair.cameras, (first.pixels, second.pixels), self._params)
+            places = places_of(pair.cameras, (first.pixels, second.pixels))
             if places is not PlacesVerdict.UNKNOWN:
                 pair.places, pair.is_by_people = places, False
             return

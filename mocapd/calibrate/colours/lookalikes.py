@@ -11,7 +11,7 @@ from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 from mocapd.types import Bytes, Floats, Ints
 
-LEAST_SHARE = 0.001  # of the picture: about half of a cuff across a room
+_LEAST_SHARE = 0.001  # of the picture: about half of a cuff across a room
 _BODY_MARGIN_SHARE = 0.04  # of the picture's width around the wearer: hands, edges, motion
 _CORNER_SHARE = 0.01  # of a polygon's circumference: how far it may be from the outline
 _EVERYWHERE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
@@ -27,38 +27,29 @@ class Lookalike:
     area_px: int
 
 
-def lookalikes(
-    pixels: Bytes,
-    shirt: Bytes,
-    model: ColourModel,
-    W: Floats,
-    least_share: float = LEAST_SHARE,
-    params: SegmentationParams | None = None,
-) -> tuple[Lookalike, ...]:
+def lookalikes(pixels: Bytes, shirt: Bytes, model: ColourModel, W: Floats) -> tuple[Lookalike, ...]:
     """Regions of a picture (H,W,3) BGR outside the wearer that read as a colour of the shirt, largest first.
 
     shirt (H,W): non-zero on the shirt: `Proposal.shirt`, or `hull_of` strokes that cover it. W (3,3): white balance.
     Colours are read as by `colours_alone`.
     """
     h, w = pixels.shape[:2]
-    ids = colours_alone(pixels, model, W, params)
+    ids = colours_alone(pixels, model, W)
     size = 2 * round(_BODY_MARGIN_SHARE * w) + 1
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     ids[cv2.dilate((shirt > 0).astype(np.uint8), near) > 0] = 0
     regions = [
         Lookalike(colour, model.names[colour - 1], polygon, area)
         for colour in range(1, len(model.names) + 1)
-        for polygon, area in _regions((ids == colour).astype(np.uint8), least_share * h * w)
+        for polygon, area in _regions((ids == colour).astype(np.uint8), _LEAST_SHARE * h * w)
     ]
     return tuple(sorted(regions, key=lambda lookalike: -lookalike.area_px))
 
 
-def colours_alone(
-    pixels: Bytes, model: ColourModel, W: Floats, params: SegmentationParams | None = None
-) -> Bytes:
+def colours_alone(pixels: Bytes, model: ColourModel, W: Floats) -> Bytes:
     """Colour ids (H,W) of a picture (H,W,3) BGR as the tracker classifies them without a pose (paper section
     5.2, step 1)."""
-    p = params if params is not None else SegmentationParams()
+    p = SegmentationParams()
     tables = ColourTables()
     tolerant = model.tolerating(p.shading_sd, p.cloth_sd)
     tables.refill(tolerant, W, p.first_threshold)

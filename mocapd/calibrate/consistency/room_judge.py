@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from itertools import combinations
 
 from mocapd.calibrate.bump.changed_places import (
-    PlacesParams,
     PlacesVerdict,
     matching_points,
     places_by_matches,
@@ -26,16 +25,15 @@ def with_the_room(
     pictures (h,w,3) BGR: each camera's at one time, None where there is none.
     """
     concerned = {name for finding in findings for name in finding.cameras}
-    params = PlacesParams()
-    features = [None if picture is None else room_features(picture, params) for picture in pictures]
+    features = [None if picture is None else room_features(picture) for picture in pictures]
     out = list(findings)
     worst: tuple[RoomVerdict, tuple[str, str]] | None = None
     for i, j in combinations(range(len(cameras)), 2):
         names, a, b = (cameras[i].name, cameras[j].name), features[i], features[j]
         if (findings and not concerned & set(names)) or a is None or b is None:
             continue
-        pair, px = (cameras[i], cameras[j]), matching_points((a, b), params)
-        places = places_by_matches(pair, px, params)
+        pair, px = (cameras[i], cameras[j]), matching_points(a, b)
+        places = places_by_matches(pair, px)
         if places is PlacesVerdict.RIGHT:
             out = [
                 one

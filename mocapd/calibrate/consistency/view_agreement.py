@@ -68,11 +68,11 @@ class PairFit:
 
 
 def fit_pair(
-    cameras: tuple[Camera, Camera], views: tuple[PersonView, PersonView], late_s: float = 0.0
+    cameras: tuple[Camera, Camera], views: tuple[PersonView, PersonView]
 ) -> PairFit | None:
-    """late_s: by how much the second camera's times are too early. None for too little common data."""
+    """None for too little common data."""
     first, second = cameras
-    a, b = views[0], resample_view(views[1], views[0].times_s - late_s)
+    a, b = views[0], resample_view(views[1], views[0].times_s)
     both = (a.spread < _SURE_CELLS) & (b.spread < _SURE_CELLS) & np.isfinite(b.px[..., 0])
     count = int(both.sum())
     if count < _LEAST:

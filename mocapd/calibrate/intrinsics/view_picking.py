@@ -1,6 +1,5 @@
 """Selects live views of the board for the intrinsics, and says what is missing as yet."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -15,23 +14,16 @@ from mocapd.types import Floats
 _USUAL_FOCAL = 0.95  # of a webcam, in picture widths: good enough to distinguish slants
 _TURN = 0.5  # a rotation by 1 rad is as new as a shift by half the picture's width
 _SIZE = 0.3  # and so is a board e times as large
-
-
-@dataclass(frozen=True, slots=True)
-class PickingParams:
-    """Criteria for picking a picture, and for having enough.
-
-    most_motion: of corners, from picture to picture at 30 Hz [parts of the picture's width].
-    """
-
-    most_motion: float = 0.004
-    least_sharpness: float = 0.6  # of the sharper picked ones
-    new_place: float = 0.13  # distance from the picked ones [picture widths]
-    new_cells: int = 3  # of the coverage map; so many are reason enough to pick a picture
-    most: int = 40
-    enough: int = 10
-    covered: float = 0.5
-    slant: float = 0.5  # spread of the board's normals, to the sides and up and down [rad, about]
+# for picking a picture
+_MOST_MOTION = 0.004  # of corners, from picture to picture at 30 Hz [parts of the picture's width]
+_LEAST_SHARPNESS = 0.6  # of the sharper picked ones
+_NEW_PLACE = 0.13  # distance from the picked ones [picture widths]
+_NEW_CELLS = 3  # of the coverage map; so many are reason enough to pick a picture
+_MOST = 40
+# for having enough
+_ENOUGH = 10
+_COVERED = 0.5
+_SLANT = 0.5  # spread of the board's normals, to the sides and up and down [rad, about]
 
 
 class Lack(StrEnum):
@@ -47,12 +39,9 @@ class Lack(StrEnum):
 class PickedViews:
     """The picked pictures of one camera."""
 
-    def __init__(
-        self, size_px: tuple[int, int], board_m: Floats, params: PickingParams | None = None
-    ) -> None:
+    def __init__(self, size_px: tuple[int, int], board_m: Floats) -> None:
         self.size_px = size_px
         self.views: list[BoardView] = []
-        self._params = params or PickingParams()
         self._board_m = board_m
         self._places = np.zeros((0, 5))
         self._counts: NDArray[np.int64] = coverage([], size_px)
@@ -69,7 +58,7 @@ class PickedViews:
 
     def still(self, motion_px: float) -> bool:
         """Whether the board moves little enough [px per 1/30 s] for a usable picture."""
-        return motion_px <= self._params.most_motion * self.size_px[0]
+        return motion_px <= _MOST_MOTION * self.size_px[0]
 
     def offer(self, view: BoardView, motion_px: float) -> bool:
         """Add this view if it is new; returns whether it was added."""
@@ -83,9 +72,9 @@ class PickedViews:
         if len(self.views):
             far = np.linalg.norm(self._places - place, axis=1)
             nearest = int(np.argmin(far))
-            if far[nearest] < self._params.new_place and new_cells < self._params.new_cells:
+            if far[nearest] < _NEW_PLACE and new_cells < _NEW_CELLS:
                 return False
-        if len(self.views) >= self._params.most:
+        if len(self.views) >= _MOST:
             return False
         self.views.append(view)
         self._places = np.vstack([self._places, place])
@@ -94,25 +83,23 @@ class PickedViews:
 
     def lack(self) -> Lack:
         """What to show next."""
-        p = self._params
-        if len(self.views) < p.enough // 2:
+        if len(self.views) < _ENOUGH // 2:
             return Lack.PICTURES
         x, y = self._spread()
-        if min(x, y) < p.slant:
+        if min(x, y) < _SLANT:
             return Lack.SIDEWAYS if x < y else Lack.UPWARDS
-        if self.covered_share < p.covered:
+        if self.covered_share < _COVERED:
             return Lack.PLACES
-        return Lack.NOTHING if len(self.views) >= p.enough else Lack.PICTURES
+        return Lack.NOTHING if len(self.views) >= _ENOUGH else Lack.PICTURES
 
     def progress(self) -> float:
         """Progress towards enough views, 0..1."""
-        p = self._params
         x, y = self._spread()
         shares = (
-            len(self.views) / p.enough,
-            self.covered_share / p.covered,
-            x / p.slant,
-            y / p.slant,
+            len(self.views) / _ENOUGH,
+            self.covered_share / _COVERED,
+            x / _SLANT,
+            y / _SLANT,
         )
         return float(np.mean(np.minimum(shares, 1.0)))
 
@@ -129,7 +116,7 @@ class PickedViews:
         if not self.views:
             return False
         sharp = float(np.percentile([picked.sharpness for picked in self.views], 75))
-        return view.sharpness < self._params.least_sharpness * sharp
+        return view.sharpness < _LEAST_SHARPNESS * sharp
 
     def _spread(self) -> tuple[float, float]:
         """Spread of the normals sideways and up and down; about an angle [rad]."""

@@ -2,6 +2,8 @@
 
 import math
 
+_TRIES = 8
+
 
 class ValueSearch:
     """Bisection by trial: apply `value`, measure, call `report`, until `over`; then `value` is the best one.
@@ -10,12 +12,10 @@ class ValueSearch:
     tolerance: of the reading, relative. Bisects on a logarithmic scale, as exposures work.
     """
 
-    def __init__(
-        self, low: int, high: int, first: int, wanted: float, tolerance: float, tries: int = 8
-    ) -> None:
+    def __init__(self, low: int, high: int, first: int, wanted: float, tolerance: float) -> None:
         self._low, self._high = max(low, 1), max(high, low, 1)
         self._wanted, self._tolerance = wanted, tolerance
-        self._left = tries
+        self._left = _TRIES
         self._best = (math.inf, first)
         self.value = min(max(first, self._low), self._high)
         self.over = False

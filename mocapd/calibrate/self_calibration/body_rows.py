@@ -15,8 +15,9 @@ from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
 from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.geometry.rotation_matrices import cross_matrices
-from mocapd.types import Camera, Floats
+from mocapd.types import Bytes, Camera, Floats
 
+_PIXEL_WEIGHT = 255  # of unclassified pixels: less would let the body grow beyond its picture
 N_CAMERA = 6  # world motion of a camera: v (3,) [m], then omega (3,) [rad]
 
 
@@ -67,6 +68,24 @@ class RowGatherer:
         )  # fmt: skip
         H, b = sums.by_size[n_unknown]
         return BodyRows(view.index, H, b, drawing.posed.joints[0].copy(), *sums.counts, sums.cost)
+
+
+def cost_of(rows: Sequence[BodyRows]) -> float:
+    """Cost of one instant in all cameras, for each drawn pixel of the shirt."""
+    return sum(row.cost for row in rows) / max(sum(float(row.visible.sum()) for row in rows), 1.0)
+
+
+def least_match_of(rows: Sequence[BodyRows]) -> float:
+    """The confirmed share of the drawn shirt, in the camera that confirms least."""
+    return min(row.match for row in rows)
+
+
+def pictured(
+    index: int, ids: Bytes, roi_px: tuple[int, int, int, int], image_scale: int, late_s: float
+) -> View:
+    """The view of a camera's classified picture ids (h,w) over roi_px of its frame, `late_s` after the body's instant."""
+    x0, y0, x1, y1 = (edge // image_scale for edge in roi_px)
+    return View(index, (x0, y0, x1, y1), ids, np.full(ids.shape, _PIXEL_WEIGHT, np.uint8), late_s)
 
 
 def camera_columns(at_m: Floats) -> Floats:

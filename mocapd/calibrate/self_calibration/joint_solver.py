@@ -12,6 +12,8 @@ from mocapd.calibrate.self_calibration.body_rows import (
     RowGatherer,
     average_cameras,
     camera_columns,
+    cost_of,
+    least_match_of,
     move_camera,
 )
 from mocapd.calibrate.self_calibration.camera_uncertainty import CameraUncertainty, uncertainty_of
@@ -122,7 +124,7 @@ class JointSolver:
     @property
     def cost(self) -> float:
         """The median cost of keyframes for each drawn pixel, at the present state."""
-        return float(np.median([_cost(frame) for frame in self._gather()]))
+        return float(np.median([cost_of(frame) for frame in self._gather()]))
 
     def solve(self) -> tuple[Rig, SelfCalibrationReport, dict[str, Floats]]:
         """The final rig, its quality, and by camera but the first the covariance (6,6) of its motion.
@@ -171,9 +173,9 @@ class JointSolver:
         p = self._p
         n = self._body.model.n_pose
         out = _Evidence(np.zeros((self._n, self._n)), np.zeros(self._n), [])
-        tolerable = p.tolerated_cost * float(np.median([_cost(frame) for frame in rows]))
+        tolerable = p.tolerated_cost * float(np.median([cost_of(frame) for frame in rows]))
         for frame, frame_views in zip(rows, self._views, strict=True):
-            if _match(frame) < p.least_match or _cost(frame) > tolerable:
+            if least_match_of(frame) < p.least_match or cost_of(frame) > tolerable:
                 out.follows.append(None)
                 continue
             Hpp, bp = np.diag(self._pose_information()), np.zeros(n)
@@ -263,7 +265,7 @@ class JointSolver:
         rows: Sequence[Sequence[BodyRows]],
         covariances: Mapping[str, Floats],
     ) -> SelfCalibrationReport:
-        good = [frame for frame in rows if _match(frame) >= self._p.least_match]
+        good = [frame for frame in rows if least_match_of(frame) >= self._p.least_match]
         visible = sum(float(r.visible.sum()) for frame in good for r in frame)
         matched = sum(float(r.matched.sum()) for frame in good for r in frame)
         first = centre(scene.cameras[0])
@@ -281,13 +283,3 @@ class JointSolver:
             factors=scene.factors[: self._body.model.space.n_shape],
             uncertainties=uncertainties,
         )
-
-
-def _cost(frame: Sequence[BodyRows]) -> float:
-    """Cost for each drawn pixel of the shirt."""
-    return sum(r.cost for r in frame) / max(sum(float(r.visible.sum()) for r in frame), 1.0)
-
-
-def _match(frame: Sequence[BodyRows]) -> float:
-    """The confirmed share of the drawn shirt, in the camera that confirms least."""
-    return min(row.match for row in frame)

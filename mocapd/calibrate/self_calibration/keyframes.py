@@ -7,6 +7,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import local_from_global, standard_skeleton
+from mocapd.calibrate.self_calibration.body_rows import pictured
 from mocapd.calibrate.self_calibration.patch_tracks import MARKS, PatchObservation, PatchSighting
 from mocapd.clock import seconds
 from mocapd.fit.motion_state import MotionState, initial_information, step_between
@@ -16,7 +17,8 @@ from mocapd.geometry.camera_model import from_camera
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats
 
-_PIXEL_WEIGHT = 255  # of unclassified pixels: less would let the body grow beyond its picture
+_LEAST_CONFIDENCE = 0.3
+_AT_WORST = 0.1  # confidence, when fewer than half of the wanted number have the other one
 _STILL_M_S = 0.3  # a mark that moves so fast halves an observation's worth
 
 
@@ -33,17 +35,10 @@ def choose_keyframes(
     observations: Sequence[PatchObservation],
     names: Sequence[str],
     count: int,
-    least_confidence: float = 0.3,
-    at_worst: float = 0.1,
 ) -> list[Keyframe]:
-    """Up to `count` observations by at least two cameras, spread over time, with high confidence and low speed.
-
-    at_worst: the confidence limit when fewer than half of `count` meet the other one.
-    """
-    chosen = _select(observations, names, count, least_confidence)
-    if len(chosen) < count / 2 and at_worst < least_confidence:
-        return _select(observations, names, count, at_worst)
-    return chosen
+    """Up to `count` observations by at least two cameras, spread over time, with high confidence and low speed."""
+    chosen = _select(observations, names, count, _LEAST_CONFIDENCE)
+    return chosen if len(chosen) >= count / 2 else _select(observations, names, count, _AT_WORST)
 
 
 def _select(
@@ -80,12 +75,10 @@ def _select(
 
 def keyframe_views(keyframe: Keyframe, image_scales: Sequence[int]) -> list[View]:
     """Each camera's picture at its own instant."""
-    out = []
-    for i, s in keyframe.sightings.items():
-        x0, y0, x1, y1 = (edge // image_scales[i] for edge in s.roi_px)
-        pixel_weight = np.full(s.ids.shape, _PIXEL_WEIGHT, np.uint8)
-        out.append(View(i, (x0, y0, x1, y1), s.ids, pixel_weight, seconds(s.t_ns - keyframe.t_ns)))
-    return out
+    return [
+        pictured(i, s.ids, s.roi_px, image_scales[i], seconds(s.t_ns - keyframe.t_ns))
+        for i, s in keyframe.sightings.items()
+    ]
 
 
 def initial_states(

@@ -75,21 +75,16 @@ class PatchTracks:
         colour_model: ColourModel,
         white_balance: Mapping[str, Floats],
         database: PoseDatabase,
-        rig: Rig | None = None,
     ) -> None:
-        """Of `bare_cameras` only name, size, K and dist are read. white_balance: W (3,3) by camera name.
-
-        rig: approximate extrinsics; then all cameras together track the wearer, which is more accurate than each
-        alone.
-        """
+        """Of `bare_cameras` only name, size, K and dist are read. white_balance: W (3,3) by camera name."""
         if len(bare_cameras) < 2:
             raise ConfigError(
                 f"{len(bare_cameras)} camera",
                 "room",
                 "two or more cameras make a room; one needs none",
             )
-        self.cameras = place_nominally(bare_cameras) if rig is None else rig.cameras
-        rigs = [Rig((camera,)) for camera in self.cameras] if rig is None else [rig]
+        self.cameras = place_nominally(bare_cameras)
+        rigs = [Rig((camera,)) for camera in self.cameras]
         self._trackers = [
             BodyTracker(
                 "shirt",
@@ -106,27 +101,25 @@ class PatchTracks:
     def add(self, frames: FrameSet) -> PatchObservation:
         """Track one frame set: the sightings by camera."""
         sightings: dict[str, PatchSighting] = {}
-        for i, tracker in enumerate(self._trackers):
-            mine = {n: f for n, f in frames.frames.items() if n in tracker.rig.names}
-            if not mine:
+        for i, (camera, tracker) in enumerate(zip(self.cameras, self._trackers, strict=True)):
+            frame = frames.frames.get(camera.name)
+            if frame is None:
                 continue
-            t_ns = frames.t_ns if len(tracker.rig.cameras) > 1 else next(iter(mine.values())).t_ns
-            track = tracker.step(FrameSet(t_ns, mine), self._shapes[i])
+            track = tracker.step(FrameSet(frame.t_ns, {camera.name: frame}), self._shapes[i])
             self._shapes[i] = track.shape
             body = track.body
             if body.tracking is not Tracking.LIVE or body.pose is None or body.joints_m is None:
                 continue
-            for camera in tracker.rig.cameras:
-                if camera.name not in track.evidence:
-                    continue
-                camera_from_world_xyzw = rotations.from_matrix(camera.R)
-                sightings[camera.name] = PatchSighting(
-                    mine[camera.name].t_ns,
-                    to_camera(camera, body.joints_m),
-                    rotations.multiply(camera_from_world_xyzw, body.pose.quats_xyzw),
-                    body.confidence,
-                    track.evidence[camera.name],
-                    track.roi_px[camera.name],
-                )
+            if camera.name not in track.evidence:
+                continue
+            camera_from_world_xyzw = rotations.from_matrix(camera.R)
+            sightings[camera.name] = PatchSighting(
+                frame.t_ns,
+                to_camera(camera, body.joints_m),
+                rotations.multiply(camera_from_world_xyzw, body.pose.quats_xyzw),
+                body.confidence,
+                track.evidence[camera.name],
+                track.roi_px[camera.name],
+            )
         self.observations.append(sightings)
         return sightings

@@ -4,7 +4,6 @@ A node in use by the setup reports "busy"; such reports are left out here.
 """
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.kinds.source_kinds import identity_of
@@ -49,7 +48,6 @@ def offers(
     cameras: Sequence[DraftCamera],
     nodes: Sequence[CameraInfo],
     statuses: Mapping[str, CaptureStatus],
-    sysfs: Path = SYSFS,
 ) -> tuple[dict[str, Mode], tuple[Problem, ...]]:
     """For cameras on a crowded USB bus: by id a mode that fits, and the problem.
 
@@ -64,7 +62,7 @@ def offers(
             formats[camera.id] = node.formats
     modes: dict[str, Mode] = {}
     problems = []
-    for bus in crowded_buses(on_usb, sysfs):
+    for bus in crowded_buses(on_usb, SYSFS):
         if all(_runs(statuses.get(name), on_usb[name][1].fps_hz) for name in bus.cameras):
             continue
         budget = bus.usable_bytes_per_s / len(bus.cameras)

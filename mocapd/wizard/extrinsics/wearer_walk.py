@@ -1,7 +1,7 @@
 """The job of the extrinsics without a board: tracks the wearer in every camera alone, then solves."""
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -54,7 +54,6 @@ def walk_and_solve(
     progress: Tell,
     load: LoadDatabase,
     params: WalkParams,
-    clock: Callable[[], int] = monotonic_ns,
 ) -> WearerExtrinsics | None:
     """The extrinsics of a draft that has intrinsics, colours and stature; None when stopped.
 
@@ -69,7 +68,7 @@ def walk_and_solve(
     database = load(cache_dir, lambda what, share: progress(what, READY * share))
     tracks = PatchTracks(bare_cameras, draft.stature_m, colours, W, database)
     if not _follow(
-        hub, tracks, Coverage([c.name for c in bare_cameras], params), walk, progress, params, clock
+        hub, tracks, Coverage([c.name for c in bare_cameras], params), walk, progress, params
     ):
         return None
     progress("working out where the cameras stand", SEEN)
@@ -106,19 +105,18 @@ def _follow(
     walk: Walk,
     progress: Tell,
     params: WalkParams,
-    clock: Callable[[], int],
 ) -> bool:
     """Track the hub's frames until there is enough; False when stopped. Raises InputError."""
     names = frozenset(camera.name for camera in tracks.cameras)
     collector = FrameCollector([camera.name for camera in tracks.cameras], hub.bundler)
     entry = CameraFilter(collector, names)
-    give_up_ns = clock() + nanoseconds(params.patience_s)
+    give_up_ns = monotonic_ns() + nanoseconds(params.patience_s)
     hub.join(entry)
     try:
         while coverage.share < 1.0:
             if walk.stop.is_set():
                 return False
-            if clock() > give_up_ns:
+            if monotonic_ns() > give_up_ns:
                 raise _too_little(coverage)
             frames = collector.get(_TIMEOUT_S)
             if frames is None:

@@ -1,7 +1,7 @@
 """One camera in the step Lens: its pictures of the board, its intrinsics, and its messages."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
@@ -18,20 +18,12 @@ _FIRST_TRY = 10  # pictures, even if they lack something: the error then says wh
 _NEXT_TRY = 4  # more pictures
 _ROWS = ("upper", "middle", "lower")
 _COLUMNS = ("left", "middle", "right")
-
-
-@dataclass(frozen=True, slots=True)
-class IntrinsicsGoal:
-    """Limits for ending the collection automatically, and by the user.
-
-    held_out: error in parts of the picture's width; focal_deviation: of the focal length, relative.
-    """
-
-    held_out: float = 1.0 / 640
-    focal_deviation: float = 0.005
-    covered: float = 0.5
-    patience: int = 24  # pictures, after which twice the deviation is acceptable
-    by_hand: float = 0.02
+# for ending the collection automatically
+_HELD_OUT = 1.0 / 640  # error, in parts of the picture's width
+_FOCAL_DEVIATION = 0.005  # of the focal length, relative
+_COVERED = 0.5
+_PATIENCE = 24  # pictures, after which twice the deviation is acceptable
+_BY_HAND = 0.02  # deviation of the focal length at which the user may end it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +47,6 @@ class CameraIntrinsics:
     usable: Intrinsics | None = None  # the newest solution below the goal
     refusal: Problem | None = None
     tried: int = 0  # pictures at the last attempt
-    good: IntrinsicsGoal = field(default_factory=IntrinsicsGoal)
 
     @property
     def name(self) -> str:
@@ -77,12 +68,11 @@ class CameraIntrinsics:
     def take(self, intrinsics: Intrinsics, tried: int) -> None:
         """Take the job's intrinsics: the result if good enough, or the best so far."""
         self.tried, self.refusal, self.usable = tried, None, intrinsics
-        good = self.good
-        deviation = good.focal_deviation * (2.0 if tried >= good.patience else 1.0)
+        deviation = _FOCAL_DEVIATION * (2.0 if tried >= _PATIENCE else 1.0)
         if (
-            intrinsics.held_out_px <= good.held_out * self.camera.size_px[0]
+            intrinsics.held_out_px <= _HELD_OUT * self.camera.size_px[0]
             and intrinsics.focal_deviation <= deviation
-            and self.picked.covered_share >= good.covered
+            and self.picked.covered_share >= _COVERED
         ):
             self.intrinsics = intrinsics
 
@@ -100,7 +90,7 @@ class CameraIntrinsics:
         """The intrinsics that the user may accept now."""
         if self.intrinsics is not None:
             return self.intrinsics
-        if self.usable is not None and self.usable.focal_deviation <= self.good.by_hand:
+        if self.usable is not None and self.usable.focal_deviation <= _BY_HAND:
             return self.usable
         return None
 
@@ -119,7 +109,7 @@ class CameraIntrinsics:
             row, column = self.picked.emptiest()
             where = f"{_ROWS[row]} {_COLUMNS[column]}".replace("middle middle", "middle")
             return f"{self.name}: hold the board in the {where} of the picture."
-        if self.usable is not None and self.picked.covered_share >= self.good.covered:
+        if self.usable is not None and self.picked.covered_share >= _COVERED:
             return f"{self.name}: show the board nearer, and tilted more."
         return (
             f"Show the board to {self.name}: here and there, tilted, still for a moment each time."
