@@ -83,3 +83,26 @@ class Step(Protocol):
     def leave(self) -> None:
         """Called before another step, or the wizard's end: undo temporary changes."""
         ...
+
+
+class StepAround:
+    """Passes on to another step what it does not answer itself; a base for a Step."""
+
+    def __init__(self, inner: Step) -> None:
+        self.inner, self.name = inner, inner.name
+
+    def enter(self) -> None:
+        """See Step."""
+        self.inner.enter()
+
+    def tick(self, now_ns: int) -> None:
+        """See Step."""
+        self.inner.tick(now_ns)
+
+    def job_failed(self, error: MocapdError) -> None:
+        """See Step."""
+        self.inner.job_failed(error)
+
+    def leave(self) -> None:
+        """See Step."""
+        self.inner.leave()

@@ -10,7 +10,6 @@ from mocapd.geometry import rotations
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.world import rig_of
 from mocapd.types import Rig
-from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from tests.tracking.shirt_film import Filmed, film, tracker_of
 from tests.tracking.stepping import Stepping
 
@@ -31,11 +30,12 @@ def measured(pose_database: PoseDatabase) -> tuple[Filmed, list[Measure], list[M
     found = []
     for one in (rig, turned):
         ready.reset()
-        into = TrackingMeasures()
-        watched = Stepping(MeasuringTracker(ready.tracker, one, ready.shape, into.add), ready.shape)
+        into: list[Measure] = []
+        measuring = MeasuringTracker(ready.tracker, one, ready.shape, into.append)
+        watched = Stepping(measuring, ready.shape)
         for frames in filmed.frame_sets(filmed.pictures):
             watched.step(frames)
-        found.append(list(into.take()))
+        found.append(into)
     return filmed, found[0], found[1]
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mocapd.calibrate.verification.check_measure import MeasuringTracker
+from mocapd.calibrate.verification.check_measure import Measure, MeasuringTracker
 from mocapd.calibrate.verification.check_verdict import camera_verdict
 from mocapd.calibrate.verification.delivery import Delivery
 from mocapd.calibration.calibration_file import calibration_path, from_saved, read_calibration
@@ -23,7 +23,6 @@ from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Rig
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.check.missing_inputs import missing_inputs
-from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.draft_file import FILE_NAME, UnfinishedSetup, read_draft, write_draft
 from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
@@ -177,15 +176,16 @@ def test_a_turned_camera_is_found_by_the_outline() -> None:
     turned = Rig((first, replace(second, R=up @ second.R, t_m=up @ second.t_m)))
     verdicts = []
     for one in (rig, turned):
-        shape, into = wearer_shape(film.known), TrackingMeasures()
+        shape = wearer_shape(film.known)
+        into: list[Measure] = []
         watched = MeasuringTracker(
-            markerless_tracker(film.known), one, shape, into.add, by_outline=True
+            markerless_tracker(film.known), one, shape, into.append, by_outline=True
         )
         stepping = Stepping(watched, shape)
         for frames in film.frames:
             stepping.step(frames)
         every = Delivery(40, 0, 30.0, 30.0, CameraLink.PLAYER)
-        verdicts.append(camera_verdict(second.name, into.take(), every, 320, has_shirt=False))
+        verdicts.append(camera_verdict(second.name, into, every, 320, has_shirt=False))
     assert verdicts[0].match > 0.6
     assert verdicts[1].reprojection_px > verdicts[0].reprojection_px + 2.0
     assert verdicts[1].problem is not None

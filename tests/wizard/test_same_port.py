@@ -96,8 +96,8 @@ def test_nothing_else_is_answered_and_the_rest_is_the_steps_own(tmp_path: Path) 
     with pytest.raises(InputError):
         do(step, "same_port", {"camera": "cam0", "same": True})
     do(step, "lock", {"camera": "cam0"})
-    assert isinstance(step._step, Done)
-    assert step._step.told == [Lock(camera="cam0")]
+    assert isinstance(step.inner, Done)
+    assert step.inner.told == [Lock(camera="cam0")]
 
 
 def test_who_is_not_plugged_in_or_may_be_a_twin_is_not_asked_about() -> None:

@@ -13,7 +13,7 @@ from mocapd.capture.webcam.identity import WebcamIdentity, match_identity, parse
 from mocapd.errors import InputError, MocapdError, Problem, UnavailableError
 from mocapd.wizard.cameras.cameras_verbs import PORTS, SamePort
 from mocapd.wizard.commands import Command, Verbs
-from mocapd.wizard.context import Context, Step
+from mocapd.wizard.context import Context, StepAround
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.step import StepState, StepView, T
 from mocapd.wizard.wizard import MakeStep
@@ -74,43 +74,26 @@ def _without(values: Mapping[str, T], name: str) -> dict[str, T]:
     return {key: value for key, value in values.items() if key != name}
 
 
-class AsksForPorts:
+class AsksForPorts(StepAround):
     """Wraps the step Cameras with the question; see the module's docstring, and Step.
 
     moved: shared by all visits of the step, so that no question is repeated.
     """
 
     def __init__(self, context: Context, make: MakeStep, moved: list[PortChange]) -> None:
+        super().__init__(make(context))
         self._context, self._moved = context, moved
-        self._step: Step = make(context)
-        self.name = self._step.name
         self._trouble: tuple[Problem, ...] = ()
-
-    def enter(self) -> None:
-        """See Step."""
-        self._step.enter()
-
-    def tick(self, now_ns: int) -> None:
-        """See Step."""
-        self._step.tick(now_ns)
-
-    def job_failed(self, error: MocapdError) -> None:
-        """See Step."""
-        self._step.job_failed(error)
-
-    def leave(self) -> None:
-        """See Step."""
-        self._step.leave()
 
     @property
     def verbs(self) -> Verbs:
         """See Step."""
-        return {**self._step.verbs, **PORTS}
+        return {**self.inner.verbs, **PORTS}
 
     def command(self, command: Command) -> None:
         """See Step."""
         if not isinstance(command, SamePort):
-            self._step.command(command)
+            self.inner.command(command)
             return
         asked = [change for change in self._moved if change.camera == command.camera]
         if not asked:
@@ -123,7 +106,7 @@ class AsksForPorts:
 
     def view(self) -> StepView:
         """See Step."""
-        view = self._step.view()
+        view = self.inner.view()
         questions = tuple(
             Problem(
                 f"a camera like it was in USB port {_port(change.was)}, and is now in {_port(change.now)}",

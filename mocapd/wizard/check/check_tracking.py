@@ -1,5 +1,6 @@
 """The tracker of the step Check: the daemon's future tracker, on the setup's own pictures."""
 
+from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +21,6 @@ from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Rig
 from mocapd.wizard.camera_filter import CameraFilter
 from mocapd.wizard.check.check_settings import CheckSettings
-from mocapd.wizard.check.tracking_measures import TrackingMeasures
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.step import Tell
 
@@ -29,12 +29,12 @@ _BUILDING = 0.8  # share of the preparation before the rehearsal
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CheckTracker:
-    """A warm tracker, its cameras, and the buffer of its measures."""
+    """A warm tracker, its cameras, and the queue of its measures, from the pipeline's thread to the wizard's."""
 
     tracker: Tracker
     shape: BodyShape
     rig: Rig
-    measures: TrackingMeasures
+    measures: deque[Measure]
 
 
 LoadTracker = Callable[[Calibration, CheckSettings, Path, Tell], CheckTracker]
@@ -53,7 +53,7 @@ def prepare(
         report(what, _BUILDING * done / max(total, 1))
 
     progress("loading the pose database", 0, 1)
-    measures = TrackingMeasures()
+    measures: deque[Measure] = deque()
     name = measuring_tracker(section.name, calibration.wearer.has_shirt)
     shape = wearer_shape(calibration)
     ready = ready_tracker(
@@ -64,10 +64,10 @@ def prepare(
             "preparing the tracker", _BUILDING + (1.0 - _BUILDING) * done / total
         ),
         watched=lambda one: MeasuringTracker(
-            one, rig, shape, measures.add, by_outline=not entry(name).reads_shirt
+            one, rig, shape, measures.append, by_outline=not entry(name).reads_shirt
         ),
     )
-    measures.take()
+    measures.clear()
     return CheckTracker(ready.tracker, ready.shape, rig, measures)
 
 
@@ -96,7 +96,8 @@ class CheckTracking:
 
     def measures(self) -> tuple[Measure, ...]:
         """New measures since the last call."""
-        return self._prepared.measures.take()
+        measures = self._prepared.measures
+        return tuple(measures.popleft() for _ in range(len(measures)))
 
     def metrics(self) -> Metrics:
         """The pipeline's metrics."""

@@ -6,42 +6,24 @@ Its commands are `extrinsics_verbs.ROOM` and the method's own.
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Protocol
 
-from mocapd.errors import InputError, MocapdError, Problem
+from mocapd.errors import InputError, Problem
 from mocapd.types import Rig
 from mocapd.wizard.commands import Command, Verbs
-from mocapd.wizard.context import Context
+from mocapd.wizard.context import Context, Step, StepAround
 from mocapd.wizard.extrinsics.extrinsics_verbs import ROOM, Method
 from mocapd.wizard.extrinsics.extrinsics_with_board import ExtrinsicsWithBoard
 from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
 from mocapd.wizard.extrinsics.rig_plan import advice_of, area_shapes
 from mocapd.wizard.step import Shape, StepState, StepView
-from mocapd.wizard.step_names import StepName
 
-
-class ExtrinsicsMethod(Protocol):
-    """A method of finding the extrinsics: the interface of Step, without a name."""
-
-    @property
-    def verbs(self) -> Verbs: ...
-    def enter(self) -> None: ...
-    def tick(self, now_ns: int) -> None: ...
-    def command(self, command: Command) -> None: ...
-    def job_failed(self, error: MocapdError) -> None: ...
-    def view(self) -> StepView: ...
-    def leave(self) -> None: ...
-
-
-METHODS: Mapping[str, Callable[[Context], ExtrinsicsMethod]] = MappingProxyType(
+METHODS: Mapping[str, Callable[[Context], Step]] = MappingProxyType(
     {"board": ExtrinsicsWithBoard, "wearer": ExtrinsicsWithWearer}
 )
 
 
-class ExtrinsicsStep:
+class ExtrinsicsStep(StepAround):
     """Delegates to the chosen method; at first the board's."""
-
-    name = StepName.ROOM
 
     def __init__(self, context: Context) -> None:
         """Raises InputError when intrinsics are missing."""
@@ -54,42 +36,34 @@ class ExtrinsicsStep:
                 "room",
                 "do the step Lens first",
             )
+        super().__init__(METHODS["board"](context))
         self._context = context
         self._method_name = "board"
-        self._method: ExtrinsicsMethod = METHODS["board"](context)
         self._advised_rig: Rig | None = None
         self._advised: tuple[Problem, ...] = ()
         self._area: Mapping[str, tuple[Shape, ...]] = {}
-
-    def enter(self) -> None:
-        """See Step."""
-        self._method.enter()
 
     def tick(self, now_ns: int) -> None:
         """See Step. Without the shirt only the board's method is available."""
         if not self._context.draft.has_shirt and self._context.job is None:
             self._choose("board")
-        self._method.tick(now_ns)
+        self.inner.tick(now_ns)
 
     @property
     def verbs(self) -> Verbs:
         """See Step."""
-        return {**self._method.verbs, **ROOM}
+        return {**self.inner.verbs, **ROOM}
 
     def command(self, command: Command) -> None:
         """See Step."""
         if isinstance(command, Method):
             self._choose("wearer" if command.wearer else command.method)
         else:
-            self._method.command(command)
-
-    def job_failed(self, error: MocapdError) -> None:
-        """See Step."""
-        self._method.job_failed(error)
+            self.inner.command(command)
 
     def view(self) -> StepView:
         """See Step."""
-        view = self._method.view()
+        view = self.inner.view()
         methods = list(METHODS) if self._context.draft.has_shirt else ["board"]
         details = {**view.details, "method": self._method_name, "methods": methods}
         if view.state is not StepState.DONE:
@@ -105,10 +79,6 @@ class ExtrinsicsStep:
             self._advised_rig, self._advised = rig, advice_of(rig)
             self._area = area_shapes(rig)
 
-    def leave(self) -> None:
-        """See Step."""
-        self._method.leave()
-
     def _choose(self, name: str) -> None:
         if name == self._method_name:
             return
@@ -119,6 +89,6 @@ class ExtrinsicsStep:
         if self._context.job is not None:
             raise InputError("something is being worked out", "room", "wait a moment")
         made = METHODS[name](self._context)
-        self._method.leave()
-        self._method_name, self._method = name, made
+        self.inner.leave()
+        self._method_name, self.inner = name, made
         made.enter()

@@ -37,6 +37,7 @@ from mocapd.wizard.extrinsics.board_request import board_request
 from mocapd.wizard.extrinsics.extrinsics_verbs import BOARD_ROOM, Floor, SkipFloor, Solve
 from mocapd.wizard.extrinsics.rig_plan import plan_of, quality_of
 from mocapd.wizard.step import Json, Scene, StepState, StepView, Tell
+from mocapd.wizard.step_names import StepName
 
 _FACING = (
     "; cameras that face each other need a board printed on both sides (mocapd board --two-sided)"
@@ -55,6 +56,7 @@ class BoardPhase(StrEnum):
 class ExtrinsicsWithBoard:
     """See the module. Changes the draft after measuring or skipping the floor."""
 
+    name = StepName.ROOM
     verbs = BOARD_ROOM
 
     def __init__(self, context: Context) -> None:
