@@ -23,6 +23,7 @@ from mocapd.web.games.frames_access import PATH as FRAMES_PATH
 from mocapd.web.games.frames_access import FramesAccess
 from mocapd.web.metrics_access import MetricsAccess
 from mocapd.web.refusal import Refusal, refusal_page
+from mocapd.web.stored_key import same_secret
 
 TOKEN = "token"  # its name in the URL's query
 LET_IN = "let_in"  # in the scope's state, for an authorised connection
@@ -80,8 +81,8 @@ class Access:
         if inside:
             scope["root_path"] = self._place
         connection = HTTPConnection(scope)
-        has_token = _same(connection.query_params.get(TOKEN, ""), self._token)
-        has_cookie = inside and _same(connection.cookies.get(self._cookie, ""), self._session)
+        has_token = same_secret(connection.query_params.get(TOKEN, ""), self._token)
+        has_cookie = inside and same_secret(connection.cookies.get(self._cookie, ""), self._session)
         cookie = ""
         if inside and has_token and scope["type"] == "http":
             # replaces the token, which the page removes from the address bar
@@ -149,7 +150,3 @@ class Access:
                 401, "The address has no valid token. Each start of mocapd makes a new one."
             )
         return None
-
-
-def _same(given: str, secret: str) -> bool:
-    return secrets.compare_digest(given.encode(errors="replace"), secret.encode())

@@ -12,8 +12,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 import mocapd
-from mocapd.boundary.parsing import decode_json
-from mocapd.errors import MalformedError, MocapdError
+from mocapd.web.answers import answer, json_answer, read_request
 from mocapd.web.editor_lease import EditorLease
 from mocapd.web.encoder import PictureEncoder
 from mocapd.web.games.frames_access import PATH as FRAMES_PATH
@@ -26,8 +25,6 @@ from mocapd.web.links.recording_link import RecordingLink
 from mocapd.web.links.wizard_link import WizardLink
 from mocapd.web.metrics_access import PATH as METRICS_PATH
 from mocapd.web.recording_routes import RecordingRoutes
-from mocapd.web.request_body import BodyTooLongError, read_body
-from mocapd.web.shown_json import as_json
 from mocapd.web.status_page import SetupAnswer, SetupRequest, Status
 
 PAGE_DIR = Path(__file__).with_name("page")
@@ -107,7 +104,7 @@ class _Routes:
     async def _status(self, _request: Request) -> Response:
         host = self._host
         wizard, hub = host.wizard, host.hub
-        return _json(
+        return json_answer(
             Status(
                 version=mocapd.__version__,
                 pid=os.getpid(),
@@ -121,21 +118,15 @@ class _Routes:
 
     async def _setup(self, request: Request) -> Response:
         """Start a setup, or continue the current one; with {step}, at that step."""
-        try:
-            body = await read_body(request)
-            asked = decode_json(body or b"{}", SetupRequest)
-        except BodyTooLongError:
-            # the rest is not waited for
-            return PlainTextResponse("that is too much", 413, headers={"connection": "close"})
-        except MalformedError as error:
-            return PlainTextResponse(f"not understood: {error}", 400)
-        try:
-            wizard = await run_in_threadpool(self._host.setup)
-        except MocapdError as error:
-            return _error_response(error)
-        if asked.step is not None:
-            wizard.send("go", {"step": asked.step})
-        return _json(SetupAnswer())
+        asked = await read_request(request, SetupRequest, b"{}")
+
+        def start() -> Response:
+            wizard = self._host.setup()
+            if asked.step is not None:
+                wizard.send("go", {"step": asked.step})
+            return json_answer(SetupAnswer())
+
+        return await answer(start)
 
     async def metrics(self, _request: Request) -> Response:
         """The metrics for Prometheus."""
@@ -178,11 +169,3 @@ class _Routes:
             await run()
         finally:
             self._sockets -= 1
-
-
-def _error_response(error: MocapdError) -> Response:
-    return _json(SetupAnswer(error.what, error.where, error.fix), 503)
-
-
-def _json(answer: object, status: int = 200) -> Response:
-    return Response(as_json(answer), status, media_type="application/json")

@@ -5,13 +5,12 @@ The page's token changes with each start, which a collector cannot follow. So th
 are: this is private from other users of this machine.
 """
 
-import secrets
 from dataclasses import dataclass
 from pathlib import Path
 
 from starlette.requests import HTTPConnection
 
-from mocapd.web.stored_key import new_key, stored_key
+from mocapd.web.stored_key import key_of, same_secret
 
 PATH = "/metrics"
 FILE_NAME = "metrics.key"  # in the state directory
@@ -34,13 +33,9 @@ class MetricsAccess:
         if connection.scope["type"] != "http" or connection.scope["path"] != PATH or not self.key:
             return False
         scheme, _, given = connection.headers.get("authorization", "").partition(" ")
-        return scheme.lower() == _SCHEME and secrets.compare_digest(
-            given.encode(errors="replace"), self.key.encode()
-        )
+        return scheme.lower() == _SCHEME and same_secret(given, self.key)
 
 
 def metrics_access(enabled: bool, state_dir: Path | None) -> MetricsAccess:
     """Access with the key stored in `state_dir`; None: a temporary key. Raises as `stored_key`."""
-    if not enabled:
-        return MetricsAccess()
-    return MetricsAccess(new_key() if state_dir is None else stored_key(state_dir / FILE_NAME))
+    return MetricsAccess(key_of(state_dir, FILE_NAME)) if enabled else MetricsAccess()

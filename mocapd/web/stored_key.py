@@ -12,9 +12,14 @@ _KEY = re.compile(r"[A-Za-z0-9_-]{32}")
 _LONGEST_FILE = 1 << 10  # [bytes]
 
 
-def new_key() -> str:
-    """A random key."""
-    return secrets.token_urlsafe(24)
+def same_secret(given: str, secret: str) -> bool:
+    """Compares in a time that says nothing of the secret."""
+    return secrets.compare_digest(given.encode(errors="replace"), secret.encode())
+
+
+def key_of(state_dir: Path | None, name: str) -> str:
+    """The stored key of this name, or a temporary one without a folder. Raises as `stored_key`."""
+    return _new_key() if state_dir is None else stored_key(state_dir / name)
 
 
 def stored_key(path: Path) -> str:
@@ -30,7 +35,7 @@ def stored_key(path: Path) -> str:
 
 
 def _make(path: Path) -> str:
-    key = new_key()
+    key = _new_key()
     try:
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         with whole_file(path, private=True) as partial:
@@ -42,3 +47,7 @@ def _make(path: Path) -> str:
             mend_of(error, "let this user write there"),
         ) from error
     return key
+
+
+def _new_key() -> str:
+    return secrets.token_urlsafe(24)

@@ -10,8 +10,8 @@ import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from mocapd.web.answers import LONGEST_BODY
 from mocapd.web.app import MOST_SOCKETS
-from mocapd.web.request_body import LONGEST_BODY
 from mocapd.web.server import WebServer
 from tests.web.browser import PATIENCE_S, Window, connect, get, origin_of, token_of, until_closed
 from tests.web.tiny_host import TinyHost

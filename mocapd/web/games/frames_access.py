@@ -8,14 +8,13 @@ it.
 The key is stored, so that it stays valid after a restart of mocapd.
 """
 
-import secrets
 from dataclasses import dataclass
 from pathlib import Path
 
 from starlette.requests import HTTPConnection
 
 from mocapd.web.refusal import Refusal
-from mocapd.web.stored_key import new_key, stored_key
+from mocapd.web.stored_key import key_of, same_secret
 
 PATH = "/frames"
 KEY = "key"  # its name in the URL's query
@@ -35,10 +34,7 @@ class FramesAccess:
         origins = connection.headers.getlist("origin")
         if len(origins) != 1 or origins[0] not in self.origins:
             return Refusal(403, "This site is not in web.allow_origins.")
-        given = connection.query_params.get(KEY, "")
-        if not self.key or not secrets.compare_digest(
-            given.encode(errors="replace"), self.key.encode()
-        ):
+        if not self.key or not same_secret(connection.query_params.get(KEY, ""), self.key):
             return Refusal(401, "The key is not valid: `mocapd web-link` prints it.")
         return None
 
@@ -55,5 +51,4 @@ def frames_access(origins: tuple[str, ...], state_dir: Path | None) -> FramesAcc
     """
     if not origins:
         return FramesAccess()
-    key = new_key() if state_dir is None else stored_key(state_dir / FILE_NAME)
-    return FramesAccess(origins, key)
+    return FramesAccess(origins, key_of(state_dir, FILE_NAME))
