@@ -1,7 +1,7 @@
 """Gauss-Newton over cameras, body shape and the poses of all keyframes, until all pictures agree."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from mocapd.calibrate.self_calibration.body_rows import (
     least_match_of,
     move_camera,
 )
-from mocapd.calibrate.self_calibration.camera_uncertainty import CameraUncertainty, uncertainty_of
+from mocapd.calibrate.self_calibration.camera_uncertainty import CameraUncertainty
 from mocapd.calibrate.self_calibration.keyframes import Keyframe, initial_states, keyframe_views
 from mocapd.calibrate.self_calibration.surface_residuals import FreeBody, free_body
 from mocapd.errors import ConfigError
@@ -25,7 +25,6 @@ from mocapd.fit.motion_state import MotionState, apply_step
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.fit.work_size import image_scales
-from mocapd.geometry.camera_model import centre
 from mocapd.shirt.garment import shirt_labels
 from mocapd.types import Camera, Floats, Rig
 
@@ -38,9 +37,7 @@ class SelfCalibrationParams:
 
     keyframes: int = 64
     rounds: int = 20
-    averaged: int = (
-        8  # last rounds: steps end in the noise of whole pixels, which their mean halves
-    )
+    averaged: int = 8  # last rounds: steps end in the noise of whole pixels; their mean halves it
     radius_px: int = 14  # work px, search radius for colours
     polish: int = 3  # rounds of the poses alone with the final extrinsics
     loose_s: float = 0.4  # weight of the initial poses, as of a prediction over this time
@@ -61,25 +58,15 @@ class SelfCalibrationReport:
     """Quality of the extrinsics.
 
     residual_px: RMS by camera, over the drawn shirt, of the distance of its pixels from their colour in the picture [px
-    of the frames]; frames: inlier keyframes; distance_m: of each camera from the first; match: share of the drawn shirt
-    that the pictures confirm; factors (n_shape,): the wearer's proportions; uncertainties: by camera but the first.
+    of the frames]; frames: inlier keyframes; match: share of the drawn shirt that the pictures confirm; factors
+    (n_shape,): the wearer's proportions; uncertainties: by camera but the first, once the sleeve rings are added.
     """
 
     residual_px: Mapping[str, float]
     frames: int
-    distance_m: Mapping[str, float]
     match: float
     factors: Floats
-    uncertainties: Mapping[str, CameraUncertainty]
-
-
-@dataclass(slots=True, eq=False)
-class _Scene:
-    """The unknowns: cameras, the factors (N,) of a free body, and a state per keyframe."""
-
-    cameras: list[Camera]
-    factors: Floats
-    states: list[MotionState]
+    uncertainties: Mapping[str, CameraUncertainty] = field(default_factory=dict)
 
 
 @dataclass(slots=True, eq=False)
@@ -108,7 +95,10 @@ class JointSolver:
         self._n_shape = len(self._body.sd)
         self._n = self._n_shape + N_CAMERA * (len(cameras) - 1)
         self._views: list[list[View]] = []
-        scene = _Scene(list(cameras), np.ones(self._n_shape), [])
+        # the unknowns: cameras, the factors (N,) of a free body, and a state per keyframe
+        self._cameras = list(cameras)
+        self._factors: Floats = np.ones(self._n_shape)
+        self._states: list[MotionState] = []
         fitter = Fitter(model, shirt_labels(model), cameras, self._work, self._tracker)
         for keyframe in keyframes:
             frame_views = keyframe_views(keyframe, self._work)
@@ -117,9 +107,8 @@ class JointSolver:
                 for s in initial_states(keyframe, cameras, model, np.ones(model.n_shape))
             ]
             best = min(fits, key=lambda fit: fit.cost)
-            scene.states.append(replace(best.state, factors=scene.factors))
+            self._states.append(replace(best.state, factors=self._factors))
             self._views.append(frame_views)
-        self._scene = scene
 
     @property
     def cost(self) -> float:
@@ -131,20 +120,20 @@ class JointSolver:
 
         Raises ConfigError when too little agrees.
         """
-        p, scene = self._p, self._scene
+        p = self._p
         history: list[tuple[tuple[Camera, ...], Floats]] = []
         for i in range(p.rounds):
-            self._step(scene, self._gather())
+            self._step(self._gather())
             if i >= p.rounds - p.averaged:
-                history.append((tuple(scene.cameras), scene.factors))
-        scene.cameras = [
+                history.append((tuple(self._cameras), self._factors))
+        self._cameras = [
             average_cameras([cameras[i] for cameras, _ in history])
-            for i in range(len(scene.cameras))
+            for i in range(len(self._cameras))
         ]
-        scene.factors = np.mean([factors for _, factors in history], axis=0)
-        scene.states = [replace(state, factors=scene.factors) for state in scene.states]
+        self._factors = np.mean([factors for _, factors in history], axis=0)
+        self._states = [replace(state, factors=self._factors) for state in self._states]
         for _ in range(p.polish):
-            self._follow(scene, self._evidence(self._gather()), np.zeros(self._n))
+            self._follow(self._evidence(self._gather()), np.zeros(self._n))
         rows = self._gather()
         covariance: Floats = np.asarray(
             np.linalg.inv(self._with_prior(self._evidence(rows)).H), dtype=np.float64
@@ -152,23 +141,22 @@ class JointSolver:
         covariances = {
             camera.name: covariance[k : k + N_CAMERA, k : k + N_CAMERA]
             for camera, k in zip(
-                scene.cameras[1:], range(self._n_shape, self._n, N_CAMERA), strict=True
+                self._cameras[1:], range(self._n_shape, self._n, N_CAMERA), strict=True
             )
         }
-        return Rig(tuple(scene.cameras)), self._report(scene, rows, covariances), covariances
+        return Rig(tuple(self._cameras)), self._report(rows), covariances
 
     def _gather(self) -> list[list[BodyRows]]:
         """The rows of every keyframe's views."""
-        scene = self._scene
         body = self._body.model
-        fitter = Fitter(body, shirt_labels(body), scene.cameras, self._work, self._tracker)
+        fitter = Fitter(body, shirt_labels(body), self._cameras, self._work, self._tracker)
         gatherer = RowGatherer(fitter, self._p.radius_px)
         return [
             [gatherer.gather(s, view) for view in v]
-            for s, v in zip(scene.states, self._views, strict=True)
+            for s, v in zip(self._states, self._views, strict=True)
         ]
 
-    def _evidence(self, rows: Sequence[Sequence[BodyRows]]) -> "_Evidence":
+    def _evidence(self, rows: Sequence[Sequence[BodyRows]]) -> _Evidence:
         """Normal equations of all keyframes. Raises ConfigError when too few agree with the body."""
         p = self._p
         n = self._body.model.n_pose
@@ -205,15 +193,15 @@ class JointSolver:
         out.b *= gain
         return out
 
-    def _with_prior(self, evidence: "_Evidence") -> "_Evidence":
+    def _with_prior(self, evidence: _Evidence) -> _Evidence:
         """Adds the prior of people's shapes, in place."""
         n, prior = self._n_shape, 1.0 / self._body.sd**2
         evidence.H[:n, :n] += np.diag(prior)
         evidence.H += 1e-9 * np.eye(self._n)
-        evidence.b[:n] -= prior * (self._scene.factors - 1.0)
+        evidence.b[:n] -= prior * (self._factors - 1.0)
         return evidence
 
-    def _step(self, scene: _Scene, rows: Sequence[Sequence[BodyRows]]) -> None:
+    def _step(self, rows: Sequence[Sequence[BodyRows]]) -> None:
         """One step of cameras and shape, the poses following.
 
         All rows together give the step, with the poses eliminated (Schur complement). Alternating with the tracker's
@@ -222,21 +210,21 @@ class JointSolver:
         """
         evidence, n = self._with_prior(self._evidence(rows)), self._n_shape
         step: Floats = np.asarray(np.linalg.solve(evidence.H, evidence.b), dtype=np.float64)
-        scene.factors = np.clip(scene.factors + step[:n], _SMALLEST, _LARGEST)
-        for i in range(1, len(scene.cameras)):
+        self._factors = np.clip(self._factors + step[:n], _SMALLEST, _LARGEST)
+        for i in range(1, len(self._cameras)):
             k = n + N_CAMERA * (i - 1)
-            scene.cameras[i] = move_camera(scene.cameras[i], step[k : k + N_CAMERA])
-        self._follow(scene, evidence, step)
+            self._cameras[i] = move_camera(self._cameras[i], step[k : k + N_CAMERA])
+        self._follow(evidence, step)
 
-    def _follow(self, scene: _Scene, evidence: "_Evidence", step: Floats) -> None:
+    def _follow(self, evidence: _Evidence, step: Floats) -> None:
         """Update the poses after a step of shape and cameras."""
-        for k, (state, follow) in enumerate(zip(scene.states, evidence.follows, strict=True)):
+        for k, (state, follow) in enumerate(zip(self._states, evidence.follows, strict=True)):
             root, local = state.root_m, state.local_xyzw
             if follow is not None:
                 root, local = apply_step(
                     self._body.model, root, local, follow[1] - follow[0] @ step
                 )
-            scene.states[k] = replace(state, root_m=root, local_xyzw=local, factors=scene.factors)
+            self._states[k] = replace(state, root_m=root, local_xyzw=local, factors=self._factors)
 
     def _pose_information(self) -> Floats:
         information = np.full(self._body.model.n_pose, 1.0 / self._p.joint_sd_rad**2)
@@ -259,27 +247,13 @@ class JointSolver:
         squared = sum(row.cost for row in mine) / self._tracker.row_weight
         return self._work[camera] * float(np.sqrt(squared / max(visible, 1.0)))
 
-    def _report(
-        self,
-        scene: _Scene,
-        rows: Sequence[Sequence[BodyRows]],
-        covariances: Mapping[str, Floats],
-    ) -> SelfCalibrationReport:
+    def _report(self, rows: Sequence[Sequence[BodyRows]]) -> SelfCalibrationReport:
         good = [frame for frame in rows if least_match_of(frame) >= self._p.least_match]
         visible = sum(float(r.visible.sum()) for frame in good for r in frame)
         matched = sum(float(r.matched.sum()) for frame in good for r in frame)
-        first = centre(scene.cameras[0])
-        uncertainties = {
-            camera.name: uncertainty_of(camera, first, covariances[camera.name])
-            for camera in scene.cameras[1:]
-        }
         return SelfCalibrationReport(
-            residual_px={c.name: self._residual_px(good, i) for i, c in enumerate(scene.cameras)},
+            residual_px={c.name: self._residual_px(good, i) for i, c in enumerate(self._cameras)},
             frames=len(good),
-            distance_m={
-                c.name: float(np.linalg.norm(centre(c) - first)) for c in scene.cameras[1:]
-            },
             match=matched / max(visible, 1.0),
-            factors=scene.factors[: self._body.model.space.n_shape],
-            uncertainties=uncertainties,
+            factors=self._factors[: self._body.model.space.n_shape],
         )

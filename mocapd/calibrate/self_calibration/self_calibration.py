@@ -3,10 +3,8 @@
 In two passes: the second starts from the poses that all cameras together give.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-
-import numpy as np
 
 from mocapd.body.model import BodyModel, build_model
 from mocapd.calibrate.self_calibration.camera_uncertainty import uncertainty_of
@@ -26,7 +24,7 @@ from mocapd.errors import ConfigError
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.work_size import image_scales
 from mocapd.geometry.camera_model import camera_from_world, centre, with_extrinsics
-from mocapd.types import Camera, Floats, Rig
+from mocapd.types import Camera, Rig
 
 
 def extrinsics_from_body(
@@ -64,11 +62,21 @@ def _solve_pass(
     stature_m: float,
     params: SelfCalibrationParams,
 ) -> tuple[Rig, SelfCalibrationReport]:
-    """One pass: by the whole body, then combined with the sleeve rings of the single cameras' observations."""
+    """One pass: by the whole body, then every camera but the first combined with the sleeve rings that it and the first
+    one saw alone."""
     rig, report, covariances = solver.solve()
-    return _with_rings(
-        rig, report, covariances, observations, stature_m, params.surface_uncertainty
-    )
+    first = rig.cameras[0]
+    work = image_scales(rig.cameras, FitParams().work_width_px)
+    cameras, uncertainties = [first], {}
+    for other, image_scale in zip(rig.cameras[1:], work[1:], strict=True):
+        pairs = ring_pairs(observations, (first, other), (work[0], image_scale))
+        prior = params.surface_uncertainty**2 * covariances[other.name]
+        camera, covariance = other, prior
+        if len(pairs.visible):
+            camera, covariance = place_by_rings(pairs, first, other, prior, stature_m)
+        cameras.append(camera)
+        uncertainties[camera.name] = uncertainty_of(camera, centre(first), covariance)
+    return Rig(tuple(cameras)), replace(report, uncertainties=uncertainties)
 
 
 def _again(
@@ -88,27 +96,3 @@ def _again(
         return _solve_pass(solver, observations, model.stature_m, params)
     except ConfigError:
         return rig, report
-
-
-def _with_rings(
-    rig: Rig,
-    report: SelfCalibrationReport,
-    covariances: Mapping[str, Floats],
-    observations: Sequence[PatchObservation],
-    stature_m: float,
-    surface_uncertainty: float,
-) -> tuple[Rig, SelfCalibrationReport]:
-    """The same with every camera but the first combined with its sleeve rings."""
-    first = rig.cameras[0]
-    work = image_scales(rig.cameras, FitParams().work_width_px)
-    cameras, uncertainties = [first], {}
-    for other, image_scale in zip(rig.cameras[1:], work[1:], strict=True):
-        pairs = ring_pairs(observations, (first, other), (work[0], image_scale))
-        prior = surface_uncertainty**2 * covariances[other.name]
-        camera, covariance = other, prior
-        if len(pairs.visible):
-            camera, covariance = place_by_rings(pairs, first, other, prior, stature_m)
-        cameras.append(camera)
-        uncertainties[camera.name] = uncertainty_of(camera, centre(first), covariance)
-    distance_m = {c.name: float(np.linalg.norm(centre(c) - centre(first))) for c in cameras[1:]}
-    return Rig(tuple(cameras)), replace(report, uncertainties=uncertainties, distance_m=distance_m)
