@@ -11,10 +11,8 @@ from mocapd.printing.paper_sizes import RULER_HEIGHT_MM, Size, paper_size_mm
 
 MIN_SQUARE_MM = 10.0  # a webcam a metre away cannot resolve the cells of a smaller marker
 _MARKER_SHARE = 0.75  # of a square's side
-_LEAST_SHARE, _WIDEST_SHARE = (
-    0.4,
-    0.9,
-)  # below, cells too small; above, no quiet zone round the marker
+# below, cells too small; above, no quiet zone round the marker
+_LEAST_SHARE, _WIDEST_SHARE = 0.4, 0.9
 
 EDGE_MM = 8.0  # what printers leave white
 _GAP_MM = 3.0

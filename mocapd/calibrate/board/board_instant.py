@@ -31,12 +31,6 @@ class BoardInstant:
     frames: Mapping[str, Frame]
     observations: Mapping[str, BoardObservation]
 
-    @property
-    def spread_ns(self) -> int:
-        """Between the first and the last of the pictures with the board [ns]."""
-        times = [observation.t_ns for observation in self.observations.values()]
-        return max(times) - min(times) if times else 0
-
 
 def motion_px(before: BoardObservation | None, view: BoardView, t_ns: int) -> float:
     """Of the corners of a view since the one before [px per 1/30 s]; infinite after too long a time."""

@@ -19,9 +19,8 @@ _EVERYWHERE = np.ones((1, 1), np.uint8)  # "no mask" of the table kernel
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Lookalike:
-    """A region that reads as `colour` (1..10), called `name`: polygon (N,2) [px] and its area."""
+    """A region that reads as the colour `name`: polygon (N,2) [px] and its area."""
 
-    colour: int
     name: str
     polygon_px: Ints
     area_px: int
@@ -39,7 +38,7 @@ def lookalikes(pixels: Bytes, shirt: Bytes, model: ColourModel, W: Floats) -> tu
     near = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     ids[cv2.dilate((shirt > 0).astype(np.uint8), near) > 0] = 0
     regions = [
-        Lookalike(colour, model.names[colour - 1], polygon, area)
+        Lookalike(model.names[colour - 1], polygon, area)
         for colour in range(1, len(model.names) + 1)
         for polygon, area in _regions((ids == colour).astype(np.uint8), _LEAST_SHARE * h * w)
     ]

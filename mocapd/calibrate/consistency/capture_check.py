@@ -102,16 +102,17 @@ class CaptureCheck:
 
     def put(self, frame: Frame) -> None:
         """Add a picture of a camera of the rig; ignores one of another size than its calibration."""
-        buffer = self._buffers.get(frame.camera)
-        if buffer is not None and frame.size_px == buffer.camera.size_px:
-            buffer.newest = frame.pixels
+        if self.put_whole(frame):
             self.put_small(frame.camera, frame.t_ns, *shrink(frame.pixels))
 
-    def put_whole(self, frame: Frame) -> None:
-        """Add a whole picture of now, in addition to the smaller ones: the room's points come from the newest."""
+    def put_whole(self, frame: Frame) -> bool:
+        """Add a whole picture of now, in addition to the smaller ones: the room's points come from the newest. Returns
+        whether it was taken."""
         buffer = self._buffers.get(frame.camera)
-        if buffer is not None and frame.size_px == buffer.camera.size_px:
-            buffer.newest = frame.pixels
+        if buffer is None or frame.size_px != buffer.camera.size_px:
+            return False
+        buffer.newest = frame.pixels
+        return True
 
     def put_small(self, camera: str, t_ns: int, small: Bytes, smaller: float) -> None:
         """The same for a picture that `shrink` already reduced."""

@@ -16,13 +16,8 @@ from mocapd.types import Camera
 Mend = Callable[[PersonView], PersonView]
 
 _ZOOMS = (0.5, 0.6, 0.7, 0.8, 0.88, 1.12, 1.25, 1.4, 1.6, 1.8, 2.0)
-_SHIFTS = (
-    -0.2,
-    -0.1,
-    0.0,
-    0.1,
-    0.2,
-)  # of a picture's side, of the middle of a part that was cut out
+# of a picture's side, of the middle of a part that was cut out
+_SHIFTS = (-0.2, -0.1, 0.0, 0.1, 0.2)
 _MOST_PERMUTED = 4  # cameras, of which all orders are tried
 
 
@@ -131,30 +126,35 @@ def _swap(count: int, i: int, j: int) -> tuple[int, ...]:
     return tuple(order)
 
 
+def _one_or_all(
+    cameras: Sequence[Camera], mend_of: Callable[[Camera], Mend]
+) -> Iterator[tuple[tuple[int, ...], tuple[Mend, ...]]]:
+    """Each camera's pictures alone are wrong, or all of them: the indexes of these, and the corrections of all."""
+    every = tuple(range(len(cameras)))
+    for chosen in dict.fromkeys([*((i,) for i in every), every]):
+        yield chosen, tuple(mend_of(cameras[i]) if i in chosen else identity_view for i in every)
+
+
 def _mirrorings(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
-    count = len(cameras)
-    for chosen in [(i,) for i in range(count)] + ([tuple(range(count))] if count > 1 else []):
-        mends: list[Mend] = [identity_view] * count
-        for i in chosen:
-            mends[i] = partial(mirror_view, width_px=cameras[i].size_px[0])
+    for chosen, mends in _one_or_all(
+        cameras, lambda camera: partial(mirror_view, width_px=camera.size_px[0])
+    ):
         if len(chosen) == 1:
             what = f"the pictures of {cameras[chosen[0]].name!r} are mirrored, left to right"
             fix = "switch off mirroring where they are recorded, or mirror the video back"
         else:
             what = "all pictures are mirrored, left to right, or the rig is of a left-handed world"
             fix = "mirror the videos back, or turn the sign of one axis of the rig's world and of its cameras"
-        yield Hypothesis(Mistake.MIRRORED, tuple(cameras), tuple(mends), chosen, what, fix)
+        yield Hypothesis(Mistake.MIRRORED, tuple(cameras), mends, chosen, what, fix)
 
 
 def _upside_down(cameras: Sequence[Camera]) -> Iterator[Hypothesis]:
-    count = len(cameras)
-    for chosen in [(i,) for i in range(count)] + ([tuple(range(count))] if count > 1 else []):
-        mends: list[Mend] = [identity_view] * count
-        for i in chosen:
-            mends[i] = partial(upside_down, size_px=cameras[i].size_px)
+    for chosen, mends in _one_or_all(
+        cameras, lambda camera: partial(upside_down, size_px=camera.size_px)
+    ):
         names = " and ".join(repr(cameras[i].name) for i in chosen)
         yield Hypothesis(
-            Mistake.TURNED, tuple(cameras), tuple(mends), chosen,
+            Mistake.TURNED, tuple(cameras), mends, chosen,
             f"the pictures of {names} are turned by 180 degrees from how they were calibrated",
             "turn the video back, or calibrate again with the camera as it is mounted",
         )  # fmt: skip

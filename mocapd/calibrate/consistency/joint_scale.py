@@ -17,15 +17,12 @@ from mocapd.calibrate.consistency.room_points import epipolar_equations
 from mocapd.calibrate.consistency.view_agreement import fit_pair, resample_view
 from mocapd.types import Camera, Floats
 
-_SURE_CELLS = 1.5
 _FITS = 1.5  # cost of two views of one person
 _LEAST = 60  # joints of a stretch
 _ITERATIONS = 15
 _JOINT_OFF = float(np.radians(0.5))  # of the joint network
-_SHIFT, _JOINTS = (
-    0.01,
-    60,
-)  # of pictures, in focal lengths: as many joints would be needed to show such a shift
+_SHIFT = 0.01  # of pictures, in focal lengths
+_JOINTS = 60  # as many joints would be needed to show such a shift
 _SD = 0.02  # of a scale that counts: cameras that face each other measure none
 _BOTH = 0.17  # sum of the logarithms of the two cameras' scales, which are opposite: 0.13 for correct cameras
 _LEAST_STRETCHES = 2
@@ -79,7 +76,7 @@ def _scales(
     if best is None:
         return None
     a, b = best[0], resample_view(best[1], best[0].times_s)
-    both = (a.spread < _SURE_CELLS) & (b.spread < _SURE_CELLS) & np.isfinite(b.px[..., 0])
+    both = a.sure & b.sure & np.isfinite(b.px[..., 0])
     if both.sum() < _LEAST:
         return None
     px = a.px[both], b.px[both]

@@ -25,10 +25,8 @@ _BLOCKS = 8
 _LEAST_S = 3.0  # of a common recording, besides what delays cut off
 _PEAK_S = 0.1  # about a peak of correlation, which is no rival of itself
 _EDGE_S = 0.05  # a peak nearer to the last trial delay may lie beyond it
-_LEAST_PEAK, _CLEAR = (
-    0.35,
-    0.85,
-)  # correlation of two cameras that count, and of its next best at most
+# correlation of two cameras that count, and of its next best at most
+_LEAST_PEAK, _CLEAR = 0.35, 0.85
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -301,7 +301,4 @@ def _rotate_px(px: Floats, size: tuple[int, int], turns: int) -> Floats:
 
 def _rotate_px_back(px: Floats, size: tuple[int, int], turns: int) -> Floats:
     """The inverse of `_rotate_px`; the size is of the picture before the rotation."""
-    w, h = size
-    x, y = px[..., 0], px[..., 1]
-    to = [(x, y), (w - 1 - y, x), (w - 1 - x, h - 1 - y), (y, h - 1 - x)][turns % 4]
-    return np.stack(to, axis=-1)
+    return _rotate_px(px, size[::-1] if turns % 2 else size, -turns)

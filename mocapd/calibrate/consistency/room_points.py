@@ -20,10 +20,8 @@ _TRIALS = 400
 _SCALES = (0.35, 3.0)  # of pictures after a user's edit
 _SHIFT = 0.4  # prior of the shift of pictures, in focal lengths, one standard deviation
 _LEAST_MATCHES = 12
-_LEAST, _TIMES = (
-    25,
-    6.0,
-)  # least matches that a change explains, and least ratio to the matches as given
+# least matches that a change explains, and least ratio to the matches as given
+_LEAST, _TIMES = 25, 6.0
 _LEAST_CENTRAL = 20  # of a change with one parameter
 _SHARE = 0.25  # least share of all matches that a change explains
 _TRIED_SCALES = np.exp(np.linspace(np.log(0.4), np.log(2.5), 185))

@@ -18,10 +18,8 @@ _JUMP_S = 0.05  # least change of a delay after dropped frames
 _ALIKE = 0.55  # agreement of cameras that certainly see the same movement
 # A recording's true rate over the rate of its times, of common mistakes
 _RATES = (0.5, 0.6, 2 / 3, 0.8, 5 / 6, 0.96, 25 / 24, 1.2, 1.25, 1.5, 5 / 3, 2.0)
-_RATE_AGREEMENT, _RATE_GAIN = (
-    0.6,
-    0.2,
-)  # least agreement of a corrected rate, and least gain over the given rates
+# least agreement of a corrected rate, and least gain over the given rates
+_RATE_AGREEMENT, _RATE_GAIN = 0.6, 0.2
 _RATE_NEAR = 0.06  # of the logarithm: rates that are no rivals
 
 

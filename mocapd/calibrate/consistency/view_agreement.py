@@ -16,7 +16,6 @@ from mocapd.types import Camera, Floats
 from mocapd.vision.heatmaps.joint_network import BODY_JOINTS
 
 CAP_DEG = 5.0  # upper bound of errors
-_SURE_CELLS = 1.5
 _NEAR_S = 0.15  # between two of a view's pictures, to interpolate
 _BETWEEN_M = (0.3, 25.0)  # from each camera, where rays may meet
 _LEAST = 40  # joints in common, to say anything
@@ -73,7 +72,7 @@ def fit_pair(
     """None for too little common data."""
     first, second = cameras
     a, b = views[0], resample_view(views[1], views[0].times_s)
-    both = (a.spread < _SURE_CELLS) & (b.spread < _SURE_CELLS) & np.isfinite(b.px[..., 0])
+    both = a.sure & b.sure & np.isfinite(b.px[..., 0])
     count = int(both.sum())
     if count < _LEAST:
         return None

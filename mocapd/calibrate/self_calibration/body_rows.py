@@ -26,8 +26,7 @@ class BodyRows:
     """Normal equations H (P,P), b (P,) by pose, then shape; at_m (3,): the hips as drawn; camera: its
     index.
 
-    visible, matched, unexplained (A,) by area as in `Fit`, in units of two work px; cost: of the
-    robust residuals.
+    visible, matched (A,) by area as in `Fit`, in units of two work px; cost: of the robust residuals.
     """
 
     camera: int
@@ -36,7 +35,6 @@ class BodyRows:
     at_m: Floats
     visible: Floats
     matched: Floats
-    unexplained: Floats
     cost: float
 
     @property
@@ -67,7 +65,8 @@ class RowGatherer:
             drawing.pinhole, n_unknown, fitter.params.row_weight,
         )  # fmt: skip
         H, b = sums.by_size[n_unknown]
-        return BodyRows(view.index, H, b, drawing.posed.joints[0].copy(), *sums.counts, sums.cost)
+        hips_m, counts = drawing.posed.joints[0].copy(), sums.counts
+        return BodyRows(view.index, H, b, hips_m, counts.visible, counts.matched, sums.cost)
 
 
 def cost_of(rows: Sequence[BodyRows]) -> float:

@@ -40,15 +40,13 @@ _SURE = 25.0  # least advantage in cost of a sure offset
 class PairOffsets:
     """Offsets of two cameras a and b: a picture of a at time t [s] is simultaneous with b's at t + offset.
 
-    times_s, offset_s (T,): of some of a's pictures. jumps (J,): rows of them at which it changes. px: usual
-    error of a corner. pairs: pictures of a with a partner that fits. sure: other offsets are much worse; refuted: zero
-    offset is much worse.
+    times_s, offset_s (T,): of some of a's pictures. jumps (J,): rows of them at which it changes. pairs:
+    pictures of a with a partner that fits. sure: other offsets are much worse; refuted: zero offset is much worse.
     """
 
     times_s: Floats
     offset_s: Floats
     jumps: Ints
-    px: float
     pairs: int
     sure: bool
     refuted: bool
@@ -235,12 +233,10 @@ def _make_offsets(trials: _Trials, path: _Path) -> PairOffsets:
     zero = int(np.argmin(np.abs(trials.offset_s)))
     sure = good.sum() >= FEWEST_PAIRS and (not others or min(others) > own + _SURE)
     refuted = float(costs[:, zero].sum()) > own + _SURE
-    px = float(np.median(error[good])) if good.any() else float("inf")
     return PairOffsets(
         trials.a.times_s,
         trials.offset_s[path.trials] + _between_trials_s(trials, path),
         jumps,
-        px,
         int(good.sum()),
         bool(sure),
         refuted,

@@ -46,11 +46,6 @@ class CameraLocks:
             isinstance(source, MayRefuse) and not source.takes_orders
         )
 
-    def settings(self, camera: str) -> WebcamSettings | None:
-        """The requested settings of a webcam at each opening; None for other sources."""
-        source = self._sources.get(camera)
-        return source.settings if source is not None else None
-
     def set_free(self, camera: str) -> None:
         """Switch its automatics on; the first call stores the original values."""
         with self._lock:
