@@ -9,7 +9,6 @@ from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.calibrate.verification.check_measure import Measure, MeasuringTracker
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.pipeline.bundler import CameraCounts
-from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.loop import OnDeath, PipelineLoop
 from mocapd.pipeline.metrics import Metrics
@@ -19,7 +18,7 @@ from mocapd.trackers.registry import entry, measuring_tracker
 from mocapd.tracking.base import Tracker
 from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Rig
-from mocapd.wizard.camera_filter import CameraFilter
+from mocapd.wizard.camera_collector import CameraCollector
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.step import Tell
@@ -84,15 +83,14 @@ class CheckTracking:
     ) -> None:
         self.rig = prepared.rig
         self._hub, self._prepared, self._shown = hub, prepared, shown
-        self._collector = FrameCollector(prepared.rig.names, hub.bundler)
+        self._collector = CameraCollector(hub, prepared.rig.names)
         smoother = Smoother(smoothing, skeleton_of(prepared.shape))
         self._loop = PipelineLoop(
             self._collector, prepared.tracker, prepared.shape, smoother, shown.bodies, died
         )
-        self._entry = CameraFilter(self._collector, frozenset(prepared.rig.names))
         self._loop.start()
         shown.loop = self._loop
-        hub.join(self._entry)
+        hub.join(self._collector)
 
     def measures(self) -> tuple[Measure, ...]:
         """New measures since the last call."""
@@ -109,6 +107,6 @@ class CheckTracking:
 
     def stop(self) -> None:
         """Stop the pipeline and clear the shown body."""
-        self._hub.leave(self._entry)
+        self._hub.leave(self._collector)
         self._loop.stop()
         self._shown.forget()
