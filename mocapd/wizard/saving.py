@@ -158,7 +158,7 @@ def _tables(
     quality = draft.extrinsics_quality
     return SavedCalibration(
         schema=SCHEMA,
-        made=Made(when=when, by=login_name(), mocapd=mocapd.__version__),
+        made=Made(when=when, by=_login_name(), mocapd=mocapd.__version__),
         room=None
         if quality is None or draft.rig is None
         else RoomFit(
@@ -294,7 +294,7 @@ def nan_of(figure: float | None) -> float:
     return math.nan if figure is None else figure
 
 
-def login_name() -> str:
+def _login_name() -> str:
     """The user's login name."""
     try:
         return getpass.getuser()

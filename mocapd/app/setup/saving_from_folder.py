@@ -1,30 +1,24 @@
 """Saves a calibration from recordings as the daemon's calibration file, with colours from stroke images."""
 
+import math
 from collections.abc import Mapping
-from datetime import UTC, datetime
 from pathlib import Path
 
-import mocapd
+import numpy as np
+
 from mocapd.boundary.files import is_file
 from mocapd.calibrate.board.board_recordings import find_recordings
 from mocapd.calibrate.colours.stroke_check import require_good_strokes
 from mocapd.calibrate.extrinsics.folder_calibration import CameraReport, FolderCalibration
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.calibration_writing import write_calibration
-from mocapd.calibration.saved_calibration import (
-    SCHEMA,
-    ColourFit,
-    LensFit,
-    Made,
-    RoomFit,
-    SavedCalibration,
-    SavedCamera,
-)
 from mocapd.config.sections import CameraSection
 from mocapd.errors import InputError
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.shirt.colour.strokes import read_labelled, require_pictures, strokes_path
-from mocapd.types import Camera, Floats, LabelledPicture, Rig
-from mocapd.wizard.saving import NOT_WRITTEN_YET, figure, login_name
+from mocapd.types import Camera, LabelledPicture, Rig
+from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
+from mocapd.wizard.saving import saved_of
 
 
 def stroked_pictures(strokes: Path, rig: Rig) -> dict[str, LabelledPicture]:
@@ -60,46 +54,33 @@ def save_from_folder(
     sources |= {camera.id: camera.source for camera in cameras}
     area = result.play_area
     W = white_balances(pictures, colour_model(()))
-    saved = SavedCalibration(
-        schema=SCHEMA,
-        made=Made(
-            when=datetime.now(UTC).replace(microsecond=0),
-            by=login_name(),
-            mocapd=mocapd.__version__,
-        ),
-        room=RoomFit(
-            method="board",
-            rms_px=figure(result.rms_px),
-            play_area_cm=None if area is None else figure(area.median_cm),
-            floor_known=floor_known,
-        ),
+    draft = Draft(
+        cameras=tuple(DraftCamera(c.name, sources[c.name], c.size_px) for c in result.rig.cameras),
         board=result.board,
-        camera=tuple(
-            _camera(camera, sources[camera.name], result.cameras[camera.name], W.get(camera.name))
-            for camera in result.rig.cameras
+        intrinsics={c.name: _lens(c, result.cameras[c.name]) for c in result.rig.cameras},
+        rig=result.rig,
+        extrinsics_quality=ExtrinsicsQuality(
+            "board",
+            result.rms_px,
+            {name: report.rms_px for name, report in result.cameras.items()},
+            math.nan if area is None else area.median_cm,
         ),
+        floor_known=floor_known,
+        colours={name: DraftColours(picture, W[name]) for name, picture in pictures.items()},
     )
-    write_calibration(out, saved, pictures, own_folder=False)
+    write_calibration(out, *saved_of(draft), own_folder=False)
 
 
-def _camera(camera: Camera, source: str, report: CameraReport, W: Floats | None) -> SavedCamera:
-    colour = None
-    if W is not None:
-        colour = ColourFit(picture=NOT_WRITTEN_YET, strokes=NOT_WRITTEN_YET, W=W.tolist())
-    return SavedCamera(
-        id=camera.name,
-        source=source,
-        size_px=camera.size_px,
-        K=camera.K.tolist(),
-        dist=camera.dist.tolist(),
-        R=camera.R.tolist(),
-        t_m=camera.t_m.tolist(),
-        rms_px=figure(report.rms_px),
-        lens=LensFit(
-            rms_px=figure(report.rms_px),
-            held_out_px=figure(report.held_out_px),
-            views=report.views,
-            focal_deviation=figure(report.focal_deviation),
-        ),
-        colour=colour,
+def _lens(camera: Camera, report: CameraReport) -> Intrinsics:
+    """The camera's lens in the joint solution, with the figures of its report."""
+    return Intrinsics(
+        camera.size_px,
+        camera.K,
+        camera.dist,
+        np.ones(len(camera.dist), bool),
+        report.rms_px,
+        report.held_out_px,
+        tuple(range(report.views)),
+        (),
+        report.focal_deviation,
     )
