@@ -14,9 +14,8 @@ from mocapd.calibration.calibration_writing import remove_setup
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import CannotCreateError, InputError, MocapdError, NewerFileError
 from mocapd.quarantine import Why, quarantine
-from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locks import CameraLocks
-from mocapd.wizard.draft import Draft, DraftCamera
+from mocapd.wizard.draft import Draft, DraftCamera, with_cameras
 from mocapd.wizard.draft_file import (
     FILE_NAME,
     OF_EARLIER_VERSIONS,

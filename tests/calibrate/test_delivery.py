@@ -5,8 +5,7 @@ from typing import Any
 
 import pytest
 
-from mocapd.calibrate.verification.delivery import Delivery, delivery_judgements
-from mocapd.calibrate.verification.grade import Grade
+from mocapd.calibrate.verification.delivery import Delivery, Grade, delivery_judgements
 from mocapd.capture.camera_link import CameraLink
 
 ALL_ARRIVE = Delivery(received=150, lost=0, rate_hz=29.9, asked_hz=30.0, link=CameraLink.USB)

@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.extrinsics.folder_alignment import AlignedViews, align_views
-from mocapd.calibrate.extrinsics.folder_calibration import FolderParams, calibrate_folder
-from mocapd.calibrate.extrinsics.lens_check import refuse_contradicted_lenses
+from mocapd.calibrate.extrinsics.folder_calibration import (
+    FolderParams,
+    calibrate_folder,
+    refuse_contradicted_lenses,
+)
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.views import Choice
 from mocapd.errors import ConfigError

@@ -14,8 +14,7 @@ from mocapd.calibrate.verification.check_verdict import (
     room_problems,
     verdict_json,
 )
-from mocapd.calibrate.verification.delivery import Delivery
-from mocapd.calibrate.verification.grade import Grade
+from mocapd.calibrate.verification.delivery import Delivery, Grade
 from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.capture.camera_link import CameraLink
 from mocapd.config.sections import TrackerSection

@@ -1,6 +1,6 @@
 """Looks in vain end a step; a slow machine does not."""
 
-from mocapd.wizard.visibility_timeout import VisibilityTimeout
+from mocapd.wizard.body.body_measuring import VisibilityTimeout
 
 
 def looks_until_ended(took_s: float) -> int:

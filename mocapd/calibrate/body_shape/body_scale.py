@@ -1,4 +1,5 @@
-"""Compares the typed stature with the scale of the extrinsics, and explains a difference."""
+"""Compares the typed stature with the scale of the extrinsics, and explains a difference; lengths to check with a tape
+measure."""
 
 from dataclasses import dataclass
 
@@ -6,6 +7,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel, shaped
 from mocapd.body.posing_kernels import forward_kinematics
+from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit
 from mocapd.fit.motion_state import MotionState
@@ -91,3 +93,22 @@ def _neck_m(state: MotionState, model: BodyModel) -> float:
     quats = np.empty((N_JOINTS, 4))
     forward_kinematics(model.parents, rest, state.root_m, state.local_xyzw, R, joints, quats)
     return float(joints[_NECK, 1])
+
+
+def lengths_cm(shape: BodyShape) -> dict[str, float]:
+    """By name, between the centres of joints [cm]."""
+    skeleton = skeleton_of(shape)
+    at = {name: skeleton.rest_m[i] for i, name in enumerate(skeleton.names)}
+
+    def length_cm(a: str, b: str) -> float:
+        return float(100.0 * sum((at[a] - at[b]) ** 2) ** 0.5)
+
+    upper = length_cm("leftUpperArm", "leftLowerArm")
+    fore = length_cm("leftLowerArm", "leftHand")
+    return {
+        "shoulder to shoulder": length_cm("leftUpperArm", "rightUpperArm"),
+        "upper arm": upper,
+        "forearm": fore,
+        "arm to the wrist": upper + fore,
+        "hips to neck": length_cm("hips", "neck"),
+    }

@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
 from mocapd.calibrate.board.back_side import Gluing, gluing_trouble
 from mocapd.calibrate.board.board_recordings import Recording, RecordingTimes, find_recordings
 from mocapd.calibrate.extrinsics.board_extrinsics import (
@@ -19,7 +21,6 @@ from mocapd.calibrate.extrinsics.board_sighting import (
     sight_board,
 )
 from mocapd.calibrate.extrinsics.folder_alignment import align_views
-from mocapd.calibrate.extrinsics.lens_check import refuse_contradicted_lenses
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
 from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered_share
@@ -27,10 +28,12 @@ from mocapd.calibrate.time_alignment.instants import Instants
 from mocapd.calibrate.time_alignment.time_alignment import TIME_FIX, AlignedTimes
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError
-from mocapd.types import Floats, Rig
+from mocapd.types import Camera, Floats, Rig
 
 # A single camera may leave its focal length open where all together then determine it.
 _ALONE = IntrinsicsLimits(focal_deviation=0.25)
+_LENS_SIGMAS = 5.0  # of a lens in the joint solution from its separate one
+_LENS_MODELS_DIFFER = 0.03  # part of the focal length that lens models differ by anyway
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,6 +224,28 @@ def _solve_rig(
         spec,
         made.gluing,
         tuple(notes),
+    )
+
+
+def refuse_contradicted_lenses(rig: Rig, alone: Mapping[str, Intrinsics]) -> None:
+    """Raises ConfigError for the camera whose focal length in the rig contradicts most its separate solution, which time
+    errors cannot affect."""
+
+    def contradiction(camera: Camera) -> float:
+        own = alone[camera.name]
+        off = abs(float(np.log(camera.K[0, 0] / own.K[0, 0])))
+        return off / max(_LENS_MODELS_DIFFER, _LENS_SIGMAS * own.focal_deviation)
+
+    worst = max(rig.cameras, key=contradiction)
+    if contradiction(worst) <= 1.0:
+        return
+    own = alone[worst.name]
+    raise ConfigError(
+        f"its own pictures give a focal length of {own.K[0, 0]:.0f} px "
+        f"(known to {100.0 * own.focal_deviation:.1f} %), all cameras together {worst.K[0, 0]:.0f} px",
+        worst.name,
+        "see that frames of one index are of one moment, that no camera moves while the board is shown, and that "
+        "the board is as large as given",
     )
 
 

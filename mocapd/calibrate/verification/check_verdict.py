@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.calibrate.verification.check_measure import CameraMeasure, Measure
-from mocapd.calibrate.verification.delivery import Delivery, delivery_judgements
-from mocapd.calibrate.verification.grade import Grade, grade
+from mocapd.calibrate.verification.delivery import Delivery, Grade, delivery_judgements, grade
 from mocapd.errors import Problem
 
 GOOD_PX, BAD_PX = 2.5, 6.0  # of a picture 640 px wide

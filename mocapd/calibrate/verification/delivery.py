@@ -1,12 +1,27 @@
 """Judges how a camera's frames arrive, and names who loses them: this machine, the camera and its link, or the light."""
 
 from dataclasses import dataclass
+from enum import StrEnum
 
-from mocapd.calibrate.verification.grade import Grade, grade
 from mocapd.capture.camera_link import CameraLink
 
 GOOD_DROPPED, BAD_DROPPED = 0.05, 0.2  # share of a camera's frames
 GOOD_RATE = 0.9  # of the requested rate
+
+
+class Grade(StrEnum):
+    """How reliable a result is."""
+
+    GOOD = "good"
+    DOUBTFUL = "doubtful"
+    BAD = "bad"
+
+
+def grade(value: float, good: float, bad: float) -> Grade:
+    """GOOD up to `good`, DOUBTFUL up to `bad`, BAD beyond and for NaN."""
+    if value <= good:
+        return Grade.GOOD
+    return Grade.DOUBTFUL if value <= bad else Grade.BAD
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,7 @@
 """Searches the board in the cameras' newest pictures, a few of them with every tick."""
 
+import threading
+from collections import deque
 from collections.abc import Iterable, Mapping
 
 from mocapd.calibrate.board.board_detection import BoardDetector
@@ -7,14 +9,49 @@ from mocapd.calibrate.board.board_instant import BoardInstant, BoardObservation,
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Floats, Frame
-from mocapd.wizard.recent_frames import RecentFrames
 from mocapd.wizard.step import Shape
 
 # Indices of sightings are far apart, so that no two count as neighbouring frames of a recording, between which the board's
 # motion is estimated; indices in between are for pictures without a sighting.
 INDEX_STEP = 100
+_KEPT = 4  # frames of a camera, for picking simultaneous ones
+_STOPPED_NS = 700_000_000  # behind the newest of all: the camera has stopped
 _AT_ONCE = 2  # pictures searched in one tick
 _SHOWN_NS = 400_000_000  # how long corners stay drawn after the last detection
+
+
+class RecentFrames:
+    """The last few frames of every camera. Takes them in the capture threads; queried in the wizard's."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()  # guards the frames
+        self._frames: dict[str, deque[Frame]] = {}
+
+    def put(self, frame: Frame) -> None:
+        """A frame of any camera."""
+        with self._lock:
+            self._frames.setdefault(frame.camera, deque(maxlen=_KEPT)).append(frame)
+
+    def together(self) -> dict[str, Frame]:
+        """By camera the frame nearest to the newest instant that all cameras have reached.
+
+        Of cameras of equal rate they are at most half a period apart. One that has stopped is absent.
+        """
+        with self._lock:
+            recent = {name: list(frames) for name, frames in self._frames.items()}
+        if not recent:
+            return {}
+        newest_ns = max(frames[-1].t_ns for frames in recent.values())
+        live = {
+            name: frames
+            for name, frames in recent.items()
+            if newest_ns - frames[-1].t_ns <= _STOPPED_NS
+        }
+        instant_ns = min(frames[-1].t_ns for frames in live.values())
+        return {
+            name: min(frames, key=lambda frame: abs(frame.t_ns - instant_ns))
+            for name, frames in live.items()
+        }
 
 
 class BoardWatch:

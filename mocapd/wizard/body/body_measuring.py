@@ -22,10 +22,11 @@ from mocapd.wizard.camera_collector import CameraCollector
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Tell
-from mocapd.wizard.visibility_timeout import VisibilityTimeout
 
 READY, SEEN = 0.25, 0.85  # shares of the job: the tracker is ready, enough observations
 _TIMEOUT_S = 0.2  # for a frame set; then `stop` is checked
+# of a frame set that counts: a slow machine is not the wearer's fault
+_LONGEST_LOOK_S = 0.25
 
 
 MakeTracker = Callable[[Draft, Path, Tell], ReadyTracker]
@@ -48,6 +49,22 @@ class BodyWatch:
 
     body: tuple[BodyState, Skeleton] | None = None
     stop: threading.Event = field(default_factory=threading.Event)
+
+
+@dataclass(slots=True)
+class VisibilityTimeout:
+    """Remaining seconds of frame sets without a visible wearer; others do not count. Independent of the machine's speed."""
+
+    left_s: float
+
+    def update(self, took_s: float, *, visible: bool) -> None:
+        """Count one frame set."""
+        if not visible:
+            self.left_s -= min(took_s, _LONGEST_LOOK_S)
+
+    @property
+    def is_over(self) -> bool:
+        return self.left_s <= 0.0
 
 
 def measure(

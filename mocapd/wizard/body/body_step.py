@@ -7,9 +7,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from mocapd.body.shape import FACTORS, BodyShape, mean_shape
-from mocapd.calibrate.body_shape.body_lengths import lengths_cm
 from mocapd.calibrate.body_shape.body_observations import BodyObservationParams
-from mocapd.calibrate.body_shape.body_scale import scale_trouble
+from mocapd.calibrate.body_shape.body_scale import lengths_cm, scale_trouble
 from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.wizard.body.body_measuring import (
     READY,

@@ -13,8 +13,7 @@ from dataclasses import asdict, replace
 from mocapd.boundary.numbers import brief
 from mocapd.boundary.urls import without_password
 from mocapd.calibrate.light.light_check import light_problems
-from mocapd.calibrate.verification.delivery import delivery_judgements
-from mocapd.calibrate.verification.grade import Grade
+from mocapd.calibrate.verification.delivery import Grade, delivery_judgements
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.capture.webcam.usb_bandwidth import Mode
 from mocapd.capture.webcam.webcam_listing import CameraInfo
@@ -23,7 +22,6 @@ from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.pipeline.other_programs import OtherPrograms
 from mocapd.wizard.camera_delivery import camera_delivery
 from mocapd.wizard.camera_trouble import too_few_cameras
-from mocapd.wizard.cameras.camera_draft import with_cameras
 from mocapd.wizard.cameras.camera_locking import CameraLocking, LockPhase
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.camera_nodes import node_of, offers, unused_nodes
@@ -32,7 +30,7 @@ from mocapd.wizard.cameras.machine_watch import MachineWatch
 from mocapd.wizard.cameras.picture_watch import PictureWatch
 from mocapd.wizard.commands import Command, OfCamera
 from mocapd.wizard.context import Context
-from mocapd.wizard.draft import DraftCamera
+from mocapd.wizard.draft import DraftCamera, with_cameras
 from mocapd.wizard.step import Json, StepState, StepView, Tell
 from mocapd.wizard.step_names import StepName
 
