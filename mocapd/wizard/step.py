@@ -8,9 +8,8 @@ from typing import TypeVar
 from mocapd.errors import Problem
 
 T = TypeVar("T")
-Tell = Callable[
-    [str, float], None
-]  # reports the current task and progress 0..1; called in the job's thread
+# reports the current task and progress 0..1; called in the job's thread
+Tell = Callable[[str, float], None]
 Json = object  # what `json.dumps` takes
 
 

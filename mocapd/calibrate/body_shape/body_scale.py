@@ -10,6 +10,7 @@ from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit
+from mocapd.errors import Problem
 from mocapd.fit.motion_state import MotionState
 from mocapd.types import Floats
 
@@ -29,14 +30,6 @@ class Scale:
     height: float
 
 
-@dataclass(frozen=True, slots=True)
-class ScaleTrouble:
-    """What disagrees, and its likely cause as something to do."""
-
-    what: str
-    fix: str
-
-
 def scale_of(fit: ShapeFit, model: BodyModel, floor_known: bool) -> Scale:
     """One common factor of all proportions; the rest is variation between people."""
     information = fit.information + 1e-3 * np.eye(len(fit.factors))
@@ -50,14 +43,16 @@ def scale_of(fit: ShapeFit, model: BodyModel, floor_known: bool) -> Scale:
     return Scale(bones, height)
 
 
-def scale_trouble(scale: Scale, stature_m: float, by_wearer: bool) -> ScaleTrouble | None:
-    """None when all agree. by_wearer: the rig's scale came from the stature, not from a board."""
+def scale_trouble(scale: Scale, stature_m: float, by_wearer: bool) -> Problem | None:
+    """What disagrees, and its likely cause as something to do; None when all agree. by_wearer: the rig's scale came from
+    the stature, not from a board."""
     off = abs(scale.bones - 1.0) > TOLERATED
     low = bool(np.isfinite(scale.height)) and abs(scale.height - 1.0) > TOLERATED
     if off and low and abs(scale.bones - scale.height) > 2.0 * _ALIKE:
-        return ScaleTrouble(
+        return Problem(
             f"arms and shoulders look {_percent(scale.bones)} than usual for {stature_m:.2f} m, the"
             f" height over the floor {_percent(scale.height)}",
+            "",
             "measure again, standing upright; if it stays, do the room again with the floor",
         )
     if off:
@@ -68,14 +63,16 @@ def scale_trouble(scale: Scale, stature_m: float, by_wearer: bool) -> ScaleTroub
             else "check the ruler printed on the board with a real one: it may have been printed at"
             " another scale, then give the right size of a square and do lens and room again"
         )
-        return ScaleTrouble(
+        return Problem(
             f"in this room you look {seems_m:.2f} m tall, {_percent(scale.bones)} than the"
             f" {stature_m:.2f} m that you typed",
+            "",
             f"correct the stature; if it is right, {board}",
         )
     if low:
-        return ScaleTrouble(
+        return Problem(
             f"your neck is {_percent(scale.height)} over the floor than usual for {stature_m:.2f} m",
+            "",
             "the floor seems to lie wrong: stand on it without a step or a bent knee and measure"
             " again; if it stays, lay the board on the floor and do the room again",
         )

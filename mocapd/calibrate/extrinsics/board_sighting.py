@@ -123,9 +123,8 @@ def _search(
 
 def _reasons(detector: BoardDetector, blank: SpreadSample) -> tuple[DetectionFailure, ...]:
     """Diagnoses picture by picture, until enough of them name the same object."""
-    most = (
-        _ASKED if detector.spec.kind is BoardKind.CHARUCO else _ASKED // 2
-    )  # the search for chessboards is slow
+    # the search for chessboards is slow
+    most = _ASKED if detector.spec.kind is BoardKind.CHARUCO else _ASKED // 2
     failures: list[DetectionFailure] = []
     for index, grey in blank.spread():
         failures.append(diagnose_detection(detector, grey, index))

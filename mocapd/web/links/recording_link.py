@@ -72,9 +72,8 @@ class RecordingLink:
         taken, hub = _Taken(), None
         try:
             while True:
-                hub = _switch_hub(
-                    taken, hub, self._host.hub
-                )  # another session has cameras of its own
+                # another session has cameras of its own
+                hub = _switch_hub(taken, hub, self._host.hub)
                 picture = taken.next()
                 if picture is None:
                     await asyncio.sleep(_LOOK_EVERY_S)

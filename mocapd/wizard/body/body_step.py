@@ -27,9 +27,8 @@ from mocapd.wizard.context import Context
 from mocapd.wizard.step import Json, Scene, Shape, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
-OLDEST_NS = (
-    200_000_000  # lifetime of the body drawn over the newest picture: arms move 20 cm in that time
-)
+# lifetime of the body drawn over the newest picture: arms move 20 cm in that time
+OLDEST_NS = 200_000_000
 
 
 class BodyStep:
@@ -116,10 +115,10 @@ class BodyStep:
         make_tracker, params = self._make_tracker, self._params
 
         def done(measured: BodyMeasurement | None) -> None:
-            if measured is not None and watched is self._watched:
-                self._found(measured)
             if watched is self._watched:
                 self._watched = None
+                if measured is not None:
+                    self._found(measured)
 
         context.start_job(
             lambda report: measure(hub, draft, cache_dir, watched, report, make_tracker, params),
@@ -138,8 +137,7 @@ class BodyStep:
             draft.extrinsics_quality is not None and draft.extrinsics_quality.method == "wearer"
         )
         trouble = scale_trouble(measured.scale, measured.shape.stature_m, by_wearer)
-        if trouble is not None:
-            self._troubles = (Problem(trouble.what, "", trouble.fix),)
+        self._troubles = () if trouble is None else (trouble,)
 
     def _stop(self) -> None:
         if self._watched is not None:

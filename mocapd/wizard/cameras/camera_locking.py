@@ -20,9 +20,8 @@ _SETTLE_NS = 2 * NS_PER_S
 _SETTLE_LONGEST_NS = 8 * NS_PER_S
 _HUNTING_NS = 6 * NS_PER_S // 10  # at first the automatics look for their values
 _STEADY = 0.02  # relative change of brightness within half a second
-_EFFECT_NS = (
-    45 * NS_PER_S // 100
-)  # until a control takes effect: frames in transit, and the sensor's own delay
+# until a control takes effect: frames in transit, and the sensor's own delay
+_EFFECT_NS = 45 * NS_PER_S // 100
 _LOOK_NS = NS_PER_S // 4
 _BRIGHTNESS_TOLERANCE = 0.25
 _WARMTH_TOLERANCE = 0.15

@@ -42,9 +42,8 @@ class ColourStep:
 
     def __init__(self, context: Context, load: LoadDatabase = pose_database) -> None:
         self._context, self._load = context, load
-        self._id = secrets.token_hex(
-            4
-        )  # distinguishes keys of pictures from those of an earlier visit
+        # distinguishes keys of pictures from those of an earlier visit
+        self._id = secrets.token_hex(4)
         self._take = 0  # of pictures
         self._countdown: Countdown | None = None
         self._now_ns = 0
