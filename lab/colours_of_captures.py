@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from lab.studies.colour_proposals import ProposalScore, score_by_strokes, table
-from mocapd.calibrate.colours.stroke_proposal import propose_strokes_together
+from mocapd.calibrate.colours.stroke_proposal import propose_strokes
 from mocapd.calibration.calibration_record import ShirtColours
 from mocapd.calibration.from_origin import from_capture
 from mocapd.capture.capture_folder import load_folder
@@ -29,7 +29,7 @@ def score_capture(
     shirt = from_capture(folder).shirt or ShirtColours()
     model = colour_model(() if standard else shirt.model)
     user = shirt.white_balance
-    found = propose_strokes_together(
+    found = propose_strokes(
         {name: one.pixels for name, one in user.items()},
         folder.rig,
         model,

@@ -5,8 +5,6 @@ black bodies (lamps, sun and sky lie near their locus) and the same with the gre
 discharge lamps and LEDs; a camera's partial correction of its light moves along the same locus.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from mocapd.types import Bytes, Floats
@@ -24,34 +22,19 @@ _NEUTRAL_MIRED = 1e6 / 6504.0
 _MINKOWSKI = 6.0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LightHypothesis:
-    """A light by name and the white balance W (3,3), model_from_camera on RGB 0..1, that undoes it."""
-
-    name: str
-    W: Floats
-
-
-def light_hypotheses(pixels: Bytes) -> tuple[LightHypothesis, ...]:
-    """All lights to try on a picture (h,w,3) BGR: the locus with its tints, and averages of the picture.
+def light_hypotheses(pixels: Bytes) -> tuple[Floats, ...]:
+    """White balances W (3,3), model_from_camera on RGB 0..1, that undo all lights to try on a picture (h,w,3) BGR: those of
+    the locus with its tints, and averages of the picture.
 
     Grey world: the mean of a room is grey [Buchsbaum 1980]; shades of grey: so is its Minkowski mean
     of order 6 [Finlayson & Trezzi 2004].
     """
-    gains = {
-        f"{1e6 / mired:.0f} K{_tint_name(tint)}": _undone(black_body_rgb(mired, tint))
-        for tint in TINTS_UV
-        for mired in MIREDS
-    }
+    gains = [_undone(black_body_rgb(mired, tint)) for tint in TINTS_UV for mired in MIREDS]
     flat = pixels.reshape(-1, 3)[:, ::-1] / 255.0
-    gains["grey world"] = _unit_gain(1.0 / np.maximum(flat.mean(axis=0), 1e-3))
+    gains.append(_unit_gain(1.0 / np.maximum(flat.mean(axis=0), 1e-3)))
     shades = np.mean(flat**_MINKOWSKI, axis=0) ** (1.0 / _MINKOWSKI)
-    gains["shades of grey"] = _unit_gain(1.0 / np.maximum(shades, 1e-3))
-    return tuple(
-        LightHypothesis(f"{name}, brightness x{level:g}", np.diag(gain * level))
-        for name, gain in gains.items()
-        for level in LEVELS
-    )
+    gains.append(_unit_gain(1.0 / np.maximum(shades, 1e-3)))
+    return tuple(np.diag(gain * level) for gain in gains for level in LEVELS)
 
 
 def black_body_rgb(mired: float, tint_uv: float = 0.0) -> Floats:
@@ -99,7 +82,3 @@ def _unit_gain(gain: Floats) -> Floats:
     """The same ratios with geometric mean 1, which separates hue from brightness."""
     balanced: Floats = gain / np.exp(np.log(gain).mean())
     return balanced
-
-
-def _tint_name(tint_uv: float) -> str:
-    return " greenish" if tint_uv > 0 else " pinkish" if tint_uv < 0 else ""

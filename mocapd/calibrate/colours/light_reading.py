@@ -87,13 +87,13 @@ class LightReader:
         segmenter.reset()
         segmenter.look(pixels)
         readings = []
-        for i, (name, candidate) in enumerate(self._candidates(segmenter)):
+        for i, candidate in enumerate(self._candidates(segmenter)):
             progress(i / (_FOLLOWED + _FINALISTS))
             fit = self._fit_from_database(index, candidate)
             if fit is None:
                 continue
             start = fresh(candidate.W)
-            reading = self._refinement.follow(index, name, fit, start, range(_FIRST_TURNS))
+            reading = self._refinement.follow(index, fit, start, range(_FIRST_TURNS))
             if reading is not None and reading.colours >= self._params.accept_colours:
                 readings.append(reading)
         if not readings:
@@ -108,7 +108,7 @@ class LightReader:
         finals = []
         for i, r in enumerate(readings[:_FINALISTS]):
             progress((_FOLLOWED + i) / (_FOLLOWED + _FINALISTS))
-            finals.append(self._refinement.follow(index, r.light, r.fit, r.appearance, turns) or r)
+            finals.append(self._refinement.follow(index, r.fit, r.appearance, turns) or r)
         return max([*finals, readings[0]], key=lambda r: r.score)
 
     def read_together(
@@ -148,21 +148,21 @@ class LightReader:
 
     # --- stages ---
 
-    def _candidates(self, segmenter: CameraSegmenter) -> list[tuple[str, ShirtCandidate]]:
+    def _candidates(self, segmenter: CameraSegmenter) -> list[ShirtCandidate]:
         """The most even candidates over all lights, without duplicates, best first."""
-        candidates: list[tuple[str, ShirtCandidate]] = []
-        for light in light_hypotheses(segmenter.picture):
-            segmenter.memory.references = (light.W,)
+        candidates: list[ShirtCandidate] = []
+        for W in light_hypotheses(segmenter.picture):
+            segmenter.memory.references = (W,)
             candidate = segmenter.find(detection.WINDOWS)
             if candidate is not None:
-                candidates.append((light.name, candidate))
-        candidates.sort(key=lambda f: -f[1].evenness)
-        distinct: list[tuple[str, ShirtCandidate]] = []
-        for name, candidate in candidates:
+                candidates.append(candidate)
+        candidates.sort(key=lambda candidate: -candidate.evenness)
+        distinct: list[ShirtCandidate] = []
+        for candidate in candidates:
             if len(distinct) < _FOLLOWED and not any(
-                _alike(candidate, other) for _, other in distinct
+                _alike(candidate, other) for other in distinct
             ):
-                distinct.append((name, candidate))
+                distinct.append(candidate)
         return distinct
 
     def _fit_from_database(self, index: int, candidate: ShirtCandidate) -> Fit | None:
@@ -192,9 +192,7 @@ class LightReader:
         best: list[Reading] = []
         lights = {
             i: tuple(
-                light.W * gain
-                for light in light_hypotheses(self._segmenters[i].picture)
-                for gain in _GAINS
+                W * gain for W in light_hypotheses(self._segmenters[i].picture) for gain in _GAINS
             )
             for i in own
         }
@@ -204,7 +202,7 @@ class LightReader:
                 memory.appearance = reading.appearance
                 # a camera with a wrong light tries all of them on the other camera's body
                 memory.references = lights[index]
-            fit, light = start.fit, start.light
+            fit = start.fit
             most, idle = 0.0, 0
             for turn in range(_FIRST_TURNS + _LAST_TURNS):
                 views = [v for i in own if (v := self._refinement.classify(i, fit)) is not None]
@@ -215,7 +213,7 @@ class LightReader:
                 fit = self._refinement.fit(fit.state, views, turn)
                 agreement = (fit.explained, confirmed_colours(fit))
                 readings = [
-                    Reading(light, fit, v, self._segmenters[v.index].memory.appearance, *agreement)
+                    Reading(fit, v, self._segmenters[v.index].memory.appearance, *agreement)
                     for v in views
                 ]
                 idle = 0 if readings[0].score > most else idle + 1
@@ -229,7 +227,7 @@ class LightReader:
             alone = own[reading.view.index]
             mine = self._refinement.judged_alone(reading)
             if mine.score >= self._refinement.judged_alone(alone).score:
-                out[reading.view.index] = replace(mine, light=alone.light)
+                out[reading.view.index] = mine
         return out
 
 

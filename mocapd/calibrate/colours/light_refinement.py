@@ -40,7 +40,6 @@ class Reading:
     (the share of the rendered shirt that the picture confirms, minus shirt colours elsewhere), and the number of
     confirmed colours."""
 
-    light: str
     fit: Fit
     view: View
     appearance: ShirtAppearance
@@ -75,9 +74,7 @@ class LightRefinement:
         """The renderer of a reading's body in camera `index`."""
         return self.fitter.drawings[index]
 
-    def follow(
-        self, index: int, light: str, fit: Fit, start: ShirtAppearance, turns: range
-    ) -> Reading | None:
+    def follow(self, index: int, fit: Fit, start: ShirtAppearance, turns: range) -> Reading | None:
         """Alternates pose and light; returns the best result, None when the body leaves the picture."""
         self.segmenters[index].memory.appearance = start
         best: Reading | None = None
@@ -90,7 +87,7 @@ class LightRefinement:
             fit = self.fit(fit.state, [view], turn)
             appearance = self.segmenters[index].memory.appearance
             agreement, colours = fit.explained, confirmed_colours(fit)
-            reading = Reading(light, fit, view, appearance, agreement, colours)
+            reading = Reading(fit, view, appearance, agreement, colours)
             if best is None or reading.score > best.score:
                 best, idle = reading, 0
             self.update_light(index, fit.state, view)

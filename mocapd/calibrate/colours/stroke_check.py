@@ -146,13 +146,13 @@ def _consensus(pixels: Bytes, witnesses: _Witnesses, model: ColourModel) -> Floa
     precision = shade_precision(model)[witnesses.colour]
     best, most = np.eye(3), -1.0
     rows = np.arange(len(witnesses.colour))
-    for light in light_hypotheses(pixels[::4, ::4]):
-        W = light.W
+    for start in light_hypotheses(pixels[::4, ::4]):
+        W = start
         for _ in range(_ROUNDS):
             off = _distances(W, witnesses.mean, model.mean, whitening)[rows, witnesses.colour]
             trust = witnesses.weight / (1.0 + (off / _AGREES) ** 2) ** 2
             W = solve_white_balance(
-                witnesses.mean, model.mean[witnesses.colour], trust, light.W, _RIDGE, precision
+                witnesses.mean, model.mean[witnesses.colour], trust, start, _RIDGE, precision
             )
         off = _distances(W, witnesses.mean, model.mean, whitening)[rows, witnesses.colour]
         agreed = float((witnesses.weight / (1.0 + (off / _AGREES) ** 2)).sum())

@@ -8,12 +8,11 @@ import numpy as np
 
 from mocapd.calibrate.colours.light_reading import MEAN_STATURE_M, LightReader, MapCameras
 from mocapd.calibrate.colours.light_refinement import Reading
-from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.colour.colour_model import ColourModel
 from mocapd.shirt.colour.strokes import COLOURS, stroke_means
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.types import Bytes, Camera, Floats, Rig
+from mocapd.types import Bytes, Floats, Rig
 
 _CONFIRMED = 0.4  # share of a rendered patch that the picture confirms, for it to get strokes
 _LEAST_PX = 4  # work px of a stroke; less is a speck
@@ -24,37 +23,15 @@ _FAR = 4.0  # standard deviations at which a pixel is of another thing
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Proposal:
-    """strokes (H,W): 0 nothing, 1..10 colour id; W (3,3) solved from them, model_from_camera on RGB
-    0..1; agreement 0..1 of the fitted body with the picture; `light`: the hypothesis it began with;
-    shirt (H,W): colour ids of the fitted body, for the preview; colours: the ids that have strokes."""
+    """strokes (H,W): 0 nothing, 1..10 colour id; W (3,3) solved from them, model_from_camera on RGB 0..1; shirt (H,W):
+    colour ids of the fitted body, for the preview."""
 
     strokes: Bytes
     W: Floats
-    agreement: float
-    light: str
     shirt: Bytes
-    colours: tuple[int, ...]
 
 
 def propose_strokes(
-    pixels: Bytes,
-    camera: Camera | None,
-    model: ColourModel,
-    database: PoseDatabase,
-    stature_m: float = MEAN_STATURE_M,
-) -> Proposal:
-    """Strokes for one picture (H,W,3) BGR of a person in the shirt.
-
-    camera: only its intrinsics matter; None: those of a usual webcam. Raises InputError when no light shows a shirt.
-    """
-    h, w = pixels.shape[:2]
-    if camera is None:
-        camera = nominal_rig("camera", (w, h)).cameras[0]
-    reader = LightReader((camera,), model, database, stature_m)
-    return _proposal(reader, 0, pixels, reader.read(0, pixels), model)
-
-
-def propose_strokes_together(
     pictures: Mapping[str, Bytes],
     rig: Rig,
     model: ColourModel,
@@ -63,7 +40,8 @@ def propose_strokes_together(
     progress: Callable[[float], None] = lambda _: None,
     map_cameras: MapCameras = map,
 ) -> dict[str, Proposal]:
-    """The same for simultaneous pictures by camera name, with known extrinsics.
+    """Strokes for simultaneous pictures (H,W,3) BGR of a person in the shirt, by camera name; of a single camera only
+    the intrinsics matter.
 
     progress: 0..1; map_cameras: `map`, or that of a pool of threads, one for each camera at best.
     The result lacks cameras without a person. Raises InputError when that is all of them.
@@ -128,11 +106,7 @@ def _proposal(
     strokes = of_one_dye(inside, pixels)
     means, counts = stroke_means(pixels, strokes)
     W = solve_white_balance(means, model.mean, counts, precision=shade_precision(model))
-    return Proposal(
-        strokes, W, reading.agreement, reading.light,
-        _upscale(rendered, drawing.image_scale, at, pixels),
-        tuple(int(k) + 1 for k in np.flatnonzero(counts)),
-    )  # fmt: skip
+    return Proposal(strokes, W, _upscale(rendered, drawing.image_scale, at, pixels))
 
 
 def _upscale(ids: Bytes, image_scale: int, at: tuple[int, int], pixels: Bytes) -> Bytes:

@@ -5,17 +5,13 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from mocapd.calibrate.colours.light_reading import MEAN_STATURE_M
-from mocapd.calibrate.colours.stroke_proposal import (
-    Proposal,
-    propose_strokes,
-    propose_strokes_together,
-)
+from mocapd.calibrate.colours.stroke_proposal import Proposal, propose_strokes
 from mocapd.errors import InputError
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.colour.from_pictures import colour_model
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.shirt.pose_database.database_file import load_or_build
-from mocapd.types import Bytes, Camera
+from mocapd.types import Bytes, Camera, Rig
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.step import Tell
 
@@ -54,7 +50,7 @@ def propose(
     if rig is not None and len(pictures) > 1 and set(pictures) <= set(rig.names):
         try:
             with ThreadPoolExecutor(_THREADS) as pool:
-                proposals = propose_strokes_together(
+                proposals = propose_strokes(
                     pictures, rig, model, database, stature_m,
                     lambda share: report(_LOOKING, _LOADED + (1.0 - _LOADED) * share), pool.map,
                 )  # fmt: skip
@@ -64,8 +60,11 @@ def propose(
     done: list[str] = []
 
     def alone(name: str) -> Proposal | InputError:
+        camera = _camera(name, draft, pictures[name])
+        shown = {camera.name: pictures[name]}
         try:
-            return propose_strokes(pictures[name], _camera(name, draft), model, database, stature_m)
+            found = propose_strokes(shown, Rig((camera,)), model, database, stature_m)
+            return found[camera.name]
         except InputError as error:
             return error
         finally:
@@ -84,12 +83,13 @@ def _no_shirt(camera: str) -> InputError:
     )
 
 
-def _camera(name: str, draft: Draft) -> Camera | None:
-    """The camera with its intrinsics, at a nominal pose; None without intrinsics."""
+def _camera(name: str, draft: Draft, pixels: Bytes) -> Camera:
+    """The camera with its intrinsics, at a nominal pose; a usual webcam without intrinsics."""
     if draft.rig is not None and name in draft.rig.names:
         return draft.rig.cameras[draft.rig.names.index(name)]
     intrinsics = draft.intrinsics.get(name)
     if intrinsics is None:
-        return None
+        height, width = pixels.shape[:2]
+        return nominal_rig("camera", (width, height)).cameras[0]
     usual = nominal_rig(name, intrinsics.size_px).cameras[0]
     return Camera(name, intrinsics.size_px, intrinsics.K, intrinsics.dist, usual.R, usual.t_m)
