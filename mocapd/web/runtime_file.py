@@ -126,14 +126,10 @@ def running(folder: Path) -> tuple[Running, ...]:
 
 
 def begin_setup(url: str, step: str | None) -> None:
-    """Start a setup on that page, or show `step` of its current one. Raises UnavailableError."""
-    _post(url, "/setup", BEGIN_S, msgspec.json.encode(SetupRequest(step)))
-
-
-def _post(url: str, path: str, timeout_s: float, body: bytes) -> bytes:
-    """The answer to a POST. Raises UnavailableError, with the page's reason for a refusal."""
+    """Start a setup on that page, or show `step` of its current one. Raises UnavailableError, with the page's reason for a
+    refusal."""
     try:
-        return _answer(url, path, timeout_s, body)
+        _answer(url, "/setup", BEGIN_S, msgspec.json.encode(SetupRequest(step)))
     except urllib.error.HTTPError as refused:
         try:
             why = decode_json(read_body(refused, _LONGEST_ANSWER), SetupAnswer)

@@ -1,7 +1,5 @@
 """Problems of stopped cameras, and of too few cameras."""
 
-from collections.abc import Iterable
-
 from mocapd.capture.camera_thread.capture_status import CaptureState
 from mocapd.errors import Problem
 from mocapd.wizard.context import Context
@@ -11,14 +9,18 @@ FEWEST_WITHOUT_SHIRT = 2
 _FIX = "plug it in again: the step goes on by itself; or leave it out in the step Cameras"
 
 
-def stopped_cameras(context: Context, ids: Iterable[str]) -> tuple[Problem, ...]:
-    """One for each camera that gives no pictures now, with the reason."""
+def stopped_cameras(context: Context) -> tuple[Problem, ...]:
+    """One for each camera of the draft that gives no pictures now, with the reason."""
     statuses = context.statuses()
-    labels = {camera.id: camera.label or camera.id for camera in context.draft.cameras}
     return tuple(
-        Problem(f"the camera stopped: {statuses[id_].reason or 'no pictures'}", labels[id_], _FIX)
-        for id_ in ids
-        if id_ in statuses and statuses[id_].state in (CaptureState.LOST, CaptureState.ENDED)
+        Problem(
+            f"the camera stopped: {statuses[camera.id].reason or 'no pictures'}",
+            camera.label or camera.id,
+            _FIX,
+        )
+        for camera in context.draft.cameras
+        if camera.id in statuses
+        and statuses[camera.id].state in (CaptureState.LOST, CaptureState.ENDED)
     )
 
 

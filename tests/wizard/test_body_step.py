@@ -8,7 +8,7 @@ import pytest
 
 from mocapd.body.model import build_model
 from mocapd.body.skeleton import INDEX
-from mocapd.calibrate.body_shape.body_observations import BodyObservationParams, BodyObservations
+from mocapd.calibrate.body_shape.body_observations import BodyObservations
 from mocapd.calibration.calibration_record import Calibration, ShirtColours, Wearer
 from mocapd.errors import InputError
 from mocapd.session.tracker_setup import ReadyTracker
@@ -128,9 +128,7 @@ def test_every_camera_has_its_picture_though_the_last_frame_of_one_came_too_late
 ) -> None:
     known = calibration_of(replace(draft, stature_m=person.stature_m))
     tracker = Stepping(shirt_tracker(known, database), wearer_shape(known))
-    observations = BodyObservations(
-        build_model(person.stature_m), person.rig.cameras, BodyObservationParams(every_s=0.0)
-    )
+    observations = BodyObservations(build_model(person.stature_m), person.rig.cameras, every_s=0.0)
     for frames in bends[:6]:
         observations.add(tracker.step(frames), frames)
     left = FrameSet(bends[6].t_ns, {"left": bends[6].frames["left"]})

@@ -1,7 +1,6 @@
 """Selects observations for measuring the wearer's shape, and decides when there are enough."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,22 +12,15 @@ from mocapd.tracking.base import Track
 from mocapd.types import BodyState, Bytes, Camera, Floats, FrameSet, Tracking
 
 _SURE = 0.15  # mean confidence of the arms' joints in an observation that counts
+# enough are so many seconds of observations with both elbows bent through _BEND_RAD, or _LONGEST_GOOD_S without bends
+_GOOD_S = 4.5
+_LONGEST_GOOD_S = 12.0
+_EVERY_S = 0.15  # between observations
+_BEND_RAD = 0.6
+PATIENCE_S = 40.0  # timeout for the total time without good visibility of the wearer
 _SIDES = [
     [INDEX[side + bone] for bone in ("UpperArm", "LowerArm", "Hand")] for side in ("left", "right")
 ]
-
-
-@dataclass(frozen=True, slots=True)
-class BodyObservationParams:
-    """Enough are `good_s` of observations, one every `every_s`, with both elbows bent through `bend_rad`; or
-    `longest_good_s` of them without bends; `patience_s`: timeout for the total time without good visibility of the
-    wearer."""
-
-    good_s: float = 4.5
-    every_s: float = 0.15
-    bend_rad: float = 0.6
-    longest_good_s: float = 12.0
-    patience_s: float = 40.0
 
 
 class BodyObservations:
@@ -36,13 +28,10 @@ class BodyObservations:
     one with the largest number of cameras, as a camera's frame may come too late."""
 
     def __init__(
-        self,
-        model: BodyModel,
-        cameras: Sequence[Camera],
-        params: BodyObservationParams | None = None,
+        self, model: BodyModel, cameras: Sequence[Camera], every_s: float = _EVERY_S
     ) -> None:
         self._model, self._cameras = model, tuple(cameras)
-        self._p = params if params is not None else BodyObservationParams()
+        self._every_s = every_s
         self.observations: list[BodyObservation] = []
         self.pictures: dict[str, Bytes] = {}
         self.pictured = 0
@@ -58,9 +47,7 @@ class BodyObservations:
         self._last = observe_body(track, frames, self._model, self._cameras, before)
         if self._last is None or before is None:
             return False  # just found: the pose has not converged, and its velocity is unknown
-        due_ns = (
-            self.observations[-1].t_ns + nanoseconds(self._p.every_s) if self.observations else 0
-        )
+        due_ns = self.observations[-1].t_ns + nanoseconds(self._every_s) if self.observations else 0
         if self._last.t_ns >= due_ns:
             self.observations.append(self._last)
             self._bends.append(elbow_bends(body))
@@ -72,17 +59,17 @@ class BodyObservations:
     @property
     def good_s(self) -> float:
         """Total time of the observations [s]."""
-        return len(self.observations) * self._p.every_s
+        return len(self.observations) * self._every_s
 
     @property
     def bent(self) -> bool:
         """Whether both elbows bent enough to locate them."""
-        return bool(self._bends) and bool((np.ptp(self._bends, axis=0) >= self._p.bend_rad).all())
+        return bool(self._bends) and bool((np.ptp(self._bends, axis=0) >= _BEND_RAD).all())
 
     @property
     def share(self) -> float:
         """Progress towards enough observations, 0..1."""
-        wanted_s = self._p.good_s if self.bent else self._p.longest_good_s
+        wanted_s = _GOOD_S if self.bent else _LONGEST_GOOD_S
         return min(1.0, self.good_s / wanted_s)
 
 

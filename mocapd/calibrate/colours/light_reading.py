@@ -64,9 +64,8 @@ class LightReader:
         model: ColourModel,
         database: PoseDatabase,
         stature_m: float = MEAN_STATURE_M,
-        params: ShirtParams | None = None,
     ) -> None:
-        self._params = params if params is not None else ShirtParams()
+        self._params = ShirtParams()
         self._cameras, self._database = tuple(cameras), database
         self._refinement = LightRefinement(self._cameras, model, stature_m, self._params)
         self._segmenters = self._refinement.segmenters

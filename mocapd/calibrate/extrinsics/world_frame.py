@@ -32,14 +32,11 @@ class PlayAreaError:
 
     median_cm: float
     p95_cm: float
-    corners: int
 
     def with_places(self, place_cm: float) -> "PlayAreaError":
         """Adds an error of `place_cm` of cameras together with all that they see, which no board shows."""
         return PlayAreaError(
-            float(np.hypot(self.median_cm, place_cm)),
-            float(np.hypot(self.p95_cm, place_cm)),
-            self.corners,
+            float(np.hypot(self.median_cm, place_cm)), float(np.hypot(self.p95_cm, place_cm))
         )
 
 
@@ -143,7 +140,7 @@ def play_area_error(rig: Rig, obs: Observations) -> PlayAreaError | None:
     if not distances:
         return None
     cm = 100.0 * np.concatenate(distances)
-    return PlayAreaError(float(np.median(cm)), float(np.percentile(cm, 95)), len(cm))
+    return PlayAreaError(float(np.median(cm)), float(np.percentile(cm, 95)))
 
 
 def _from_rigid(board_m: Floats, points_m: Floats) -> Floats:

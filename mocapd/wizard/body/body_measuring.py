@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mocapd.body.model import build_model
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.calibrate.body_shape.body_observations import BodyObservationParams, BodyObservations
+from mocapd.calibrate.body_shape.body_observations import PATIENCE_S, BodyObservations
 from mocapd.calibrate.body_shape.body_scale import Scale, scale_of
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit, fit_shape
 from mocapd.clock import monotonic_ns, seconds
@@ -74,7 +74,6 @@ def measure(
     watched: BodyWatch,
     report: Tell,
     make_tracker: MakeTracker,
-    params: BodyObservationParams,
 ) -> BodyMeasurement | None:
     """Measure the wearer of a draft that has room, colours and stature; None when stopped.
 
@@ -84,9 +83,9 @@ def measure(
     assert draft.stature_m is not None
     ready = make_tracker(draft, cache_dir, report)
     model = build_model(draft.stature_m)
-    observations = BodyObservations(model, draft.rig.cameras, params)
+    observations = BodyObservations(model, draft.rig.cameras)
     if not _watch(
-        hub, draft.rig, ready, observations, watched, report, VisibilityTimeout(params.patience_s)
+        hub, draft.rig, ready, observations, watched, report, VisibilityTimeout(PATIENCE_S)
     ):
         return None
     report("working out the proportions", SEEN)

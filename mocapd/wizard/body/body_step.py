@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from mocapd.body.shape import FACTORS, BodyShape, mean_shape
-from mocapd.calibrate.body_shape.body_observations import BodyObservationParams
 from mocapd.calibrate.body_shape.body_scale import lengths_cm, scale_trouble
 from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.wizard.body.body_measuring import (
@@ -37,14 +36,8 @@ class BodyStep:
     name = StepName.BODY
     verbs = BODY
 
-    def __init__(
-        self,
-        context: Context,
-        make_tracker: MakeTracker = measuring_tracker,
-        params: BodyObservationParams | None = None,
-    ) -> None:
+    def __init__(self, context: Context, make_tracker: MakeTracker = measuring_tracker) -> None:
         self._context, self._make_tracker = context, make_tracker
-        self._params = params if params is not None else BodyObservationParams()
         self._watched: BodyWatch | None = None  # during a measuring job
         self._measured: BodyMeasurement | None = None
         self._skipped = False
@@ -112,7 +105,7 @@ class BodyStep:
         context, watched = self._context, BodyWatch()
         self._watched, self._troubles = watched, ()
         hub, draft, cache_dir = context.hub, context.draft, context.cache_dir
-        make_tracker, params = self._make_tracker, self._params
+        make_tracker = self._make_tracker
 
         def done(measured: BodyMeasurement | None) -> None:
             if watched is self._watched:
@@ -121,7 +114,7 @@ class BodyStep:
                     self._found(measured)
 
         context.start_job(
-            lambda report: measure(hub, draft, cache_dir, watched, report, make_tracker, params),
+            lambda report: measure(hub, draft, cache_dir, watched, report, make_tracker),
             done,
         )
 

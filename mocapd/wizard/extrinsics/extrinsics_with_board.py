@@ -302,7 +302,7 @@ class ExtrinsicsWithBoard:
         return 0.7 * self._collection.progress
 
     def _problems(self) -> tuple[Problem, ...]:
-        problems = list(stopped_cameras(self._context, [camera.id for camera in self._cameras]))
+        problems = list(stopped_cameras(self._context))
         if self._stage is not BoardPhase.COLLECT and self._made is not None and self._made.gluing:
             trouble = gluing_trouble(self._made.gluing)
             problems += [Problem(trouble, "the board")] if trouble else []

@@ -184,7 +184,7 @@ class ExtrinsicsWithWearer:
         return f" to about {turn_deg:.0f}° and {percent:.0f} %"
 
     def _problems(self) -> tuple[Problem, ...]:
-        problems = list(stopped_cameras(self._context, [c.id for c in self._context.draft.cameras]))
+        problems = list(stopped_cameras(self._context))
         missing = self._missing()
         problems += [missing] if missing is not None else []
         problems += [self._refusal] if self._refusal is not None else []

@@ -310,7 +310,7 @@ class IntrinsicsStep:
 
     def _problems(self) -> tuple[Problem, ...]:
         left = {id_: camera.intrinsics is None for id_, camera in self._cameras.items()}
-        stopped = stopped_cameras(self._context, self._cameras)
+        stopped = stopped_cameras(self._context)
         refused = tuple(
             camera.refusal
             for camera in self._cameras.values()
