@@ -12,7 +12,7 @@ import numpy as np
 
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, aruco_board, first_markers
 from mocapd.errors import ConfigError
-from mocapd.types import Bytes, Floats, Ints
+from mocapd.types import Bytes, Floats, Ints, Singles
 
 _MARKERS = 250  # of a dictionary: no portable board has more
 _PLENTY = 0.6  # share of the corners that needs no second search
@@ -52,7 +52,6 @@ class BoardView:
 class DetectionFailure:
     """No usable board in this picture. `detail`: what the picture shows instead; `markers`: how many of any dictionary."""
 
-    index: int
     reason: Reason
     detail: str = ""
     markers: int = 0
@@ -193,9 +192,14 @@ def edge_sharpness(grey: Bytes, corners_px: Floats) -> float:
     dark, light = np.percentile(part, (5, 95))
     if light - dark < 8.0:
         return 0.0
-    gx = cv2.Scharr(part, cv2.CV_32F, 1, 0) / 32.0
-    gy = cv2.Scharr(part, cv2.CV_32F, 0, 1) / 32.0
-    return float(np.percentile(np.hypot(gx, gy), 98) / (light - dark))
+    return float(np.percentile(edge_rise(part), 98) / (light - dark))
+
+
+def edge_rise(picture: Singles) -> Singles:
+    """(h,w): the rise of the grey values of a picture (h,w) per pixel."""
+    gx = cv2.Scharr(picture, cv2.CV_32F, 1, 0) / 32.0
+    gy = cv2.Scharr(picture, cv2.CV_32F, 0, 1) / 32.0
+    return np.asarray(np.hypot(gx, gy), dtype=np.float32)
 
 
 def _on_a_line(corners_px: Floats) -> bool:

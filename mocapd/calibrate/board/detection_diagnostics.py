@@ -17,6 +17,7 @@ from mocapd.calibrate.board.board_detection import (
     DetectionFailure,
     Reason,
     as_grey,
+    edge_rise,
     mirror_image,
 )
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, dictionaries, first_markers
@@ -65,19 +66,19 @@ def most_telling(failures: Sequence[DetectionFailure]) -> DetectionFailure:
     return max(failures, key=rank)
 
 
-def diagnose_detection(detector: BoardDetector, pixels: Bytes, index: int = 0) -> DetectionFailure:
+def diagnose_detection(detector: BoardDetector, pixels: Bytes) -> DetectionFailure:
     """The likeliest reason why `detector` finds no board in this picture."""
     grey = detector.as_printed(pixels)
     lit = as_grey(pixels)
     if np.percentile(lit, 98) < _DARK:
-        return DetectionFailure(index, Reason.TOO_DARK)
+        return DetectionFailure(Reason.TOO_DARK)
     if detector.spec.kind is BoardKind.CHARUCO:
-        failure = _of_markers(detector, grey, index)
+        failure = _of_markers(detector, grey)
     else:
-        failure = _of_squares(detector.spec, grey, index)
+        failure = _of_squares(detector.spec, grey)
     if failure is not None:
         return failure
-    return DetectionFailure(index, Reason.BLURRED if _is_blurred(lit) else Reason.NOTHING)
+    return DetectionFailure(Reason.BLURRED if _is_blurred(lit) else Reason.NOTHING)
 
 
 def _is_blurred(lit: Bytes) -> bool:
@@ -86,29 +87,27 @@ def _is_blurred(lit: Bytes) -> bool:
     low, high = np.percentile(smooth, (1, 99))
     if high - low < _CONTRAST:
         return False
-    gx = cv2.Scharr(smooth, cv2.CV_32F, 1, 0) / 32.0
-    gy = cv2.Scharr(smooth, cv2.CV_32F, 0, 1) / 32.0
-    return float(np.percentile(np.hypot(gx, gy), 99.9)) < _SHARP * float(high - low)
+    return float(np.percentile(edge_rise(smooth), 99.9)) < _SHARP * float(high - low)
 
 
-def _of_markers(detector: BoardDetector, grey: Bytes, index: int) -> DetectionFailure | None:
+def _of_markers(detector: BoardDetector, grey: Bytes) -> DetectionFailure | None:
     spec = detector.spec
     ids = detector.markers(grey)
     if spec.two_sided:
         grey, ids = _clearer_side(detector, grey, ids)
     # first, since a mirrored marker may well be another marker of a large dictionary
     elif _is_mirrored(detector, grey, len(ids)):
-        return DetectionFailure(index, Reason.MIRRORED)
+        return DetectionFailure(Reason.MIRRORED)
     if len(ids) >= _CERTAIN:
-        return _of_own_markers(spec, ids, grey, index)
+        return _of_own_markers(spec, ids, grey)
     swapped = BoardDetector(replace(spec, inverted=not spec.inverted))
     swapped_ids = swapped.markers(255 - grey)
     if len(swapped_ids) >= _CERTAIN:
-        failure = _of_own_markers(swapped.spec, swapped_ids, 255 - grey, index)
+        failure = _of_own_markers(swapped.spec, swapped_ids, 255 - grey)
         ink = "light on dark" if swapped.spec.inverted else "dark on light"
         return replace(failure, detail=f"{failure.detail}, printed {ink}")
-    other = _other_dictionary(spec, grey, index) or _other_kind(spec, grey, index)
-    return _few(spec, ids, index) if other is None and len(ids) else other
+    other = _other_dictionary(spec, grey) or _other_kind(spec, grey)
+    return _few(spec, ids) if other is None and len(ids) else other
 
 
 def _is_mirrored(detector: BoardDetector, grey: Bytes, markers: int) -> bool:
@@ -119,19 +118,19 @@ def _is_mirrored(detector: BoardDetector, grey: Bytes, markers: int) -> bool:
     return len(detector.markers(mirrored)) >= max(_CERTAIN, 2 * markers + 1)
 
 
-def _of_own_markers(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFailure:
+def _of_own_markers(spec: BoardSpec, ids: Ints, grey: Bytes) -> DetectionFailure:
     """For visible markers of the right dictionary: a larger board, another one, or too few markers."""
     on_board = spec.columns * spec.rows // 2
     foreign = ids[ids >= on_board]
     if len(foreign) > 1:  # a single one may be chance
         detail = f"marker {foreign[-1]} is seen; {spec} has markers 0 to {on_board - 1}"
-        return DetectionFailure(index, Reason.OTHER_SIZE, detail, len(ids))
-    return _misfit(spec, ids, grey, index)
+        return DetectionFailure(Reason.OTHER_SIZE, detail, len(ids))
+    return _misfit(spec, ids, grey)
 
 
-def _few(spec: BoardSpec, ids: Ints, index: int) -> DetectionFailure:
+def _few(spec: BoardSpec, ids: Ints) -> DetectionFailure:
     detail = f"{len(ids)} of {spec.columns * spec.rows // 2} markers"
-    return DetectionFailure(index, Reason.FEW, detail, len(ids))
+    return DetectionFailure(Reason.FEW, detail, len(ids))
 
 
 def _clearer_side(detector: BoardDetector, grey: Bytes, ids: Ints) -> tuple[Bytes, Ints]:
@@ -141,7 +140,7 @@ def _clearer_side(detector: BoardDetector, grey: Bytes, ids: Ints) -> tuple[Byte
     return (mirrored, others) if len(others) > len(ids) else (grey, ids)
 
 
-def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFailure:
+def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes) -> DetectionFailure:
     """For visible markers of the board without corners: too few of them, or another layout than given."""
     sizes = [
         (columns, rows)
@@ -155,8 +154,8 @@ def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes, index: int) -> DetectionFai
     for columns, rows in sizes:
         if _shows(_board_of_size(spec, columns, rows), grey):
             detail = f"it fits rows of {columns} squares, {spec.columns}x{spec.rows} was given"
-            return DetectionFailure(index, Reason.OTHER_SIZE, detail, len(ids))
-    return _few(spec, ids, index)
+            return DetectionFailure(Reason.OTHER_SIZE, detail, len(ids))
+    return _few(spec, ids)
 
 
 def _board_of_size(
@@ -181,13 +180,13 @@ def grey_of(spec: BoardSpec, as_printed: Bytes) -> Bytes:
     return 255 - as_printed if spec.inverted else as_printed
 
 
-def _other_dictionary(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | None:
+def _other_dictionary(spec: BoardSpec, grey: Bytes) -> DetectionFailure | None:
     """The family of dictionaries with the most visible markers, dark on light or light on dark."""
     best = _most_markers(grey, _family(spec.dictionary))
     if best is None:
         return None
     count, name = best
-    return DetectionFailure(index, Reason.OTHER_DICTIONARY, f"{count} markers of {name}", count)
+    return DetectionFailure(Reason.OTHER_DICTIONARY, f"{count} markers of {name}", count)
 
 
 def _most_markers(grey: Bytes, left_out: str = "") -> tuple[int, str] | None:
@@ -215,23 +214,23 @@ def _family(name: str) -> str:
     return re.sub(r"_(50|100|250|1000)$", "", name.lower())
 
 
-def _other_kind(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | None:
+def _other_kind(spec: BoardSpec, grey: Bytes) -> DetectionFailure | None:
     """A chessboard in place of the ChArUco board of so many squares."""
     plain, small = replace(spec, two_sided=False), downscale(grey, _SQUARES_PX)
     for columns, rows in ((spec.columns, spec.rows), (spec.rows, spec.columns)):
         if _shows_squares(_board_of_size(plain, columns, rows, BoardKind.CHESSBOARD), small):
             detail = f"a plain chessboard of {columns}x{rows} squares, without markers"
-            return DetectionFailure(index, Reason.OTHER_KIND, detail)
+            return DetectionFailure(Reason.OTHER_KIND, detail)
     return None
 
 
-def _of_squares(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | None:
+def _of_squares(spec: BoardSpec, grey: Bytes) -> DetectionFailure | None:
     """A board with markers, or a plain one of another size: turned, or its inner corners counted."""
     markers = _most_markers(grey)
     if markers is not None:
         count, name = markers
         detail = f"a ChArUco board with {count} markers of {name}"
-        return DetectionFailure(index, Reason.OTHER_KIND, detail, count)
+        return DetectionFailure(Reason.OTHER_KIND, detail, count)
     c, r = spec.columns, spec.rows
     others = [(r, c), (c + 1, r + 1), (c - 1, r - 1), (r + 1, c + 1), (r - 1, c - 1)]
     others += [(c + 1, r), (c, r + 1), (c - 1, r), (c, r - 1)]
@@ -239,7 +238,7 @@ def _of_squares(spec: BoardSpec, grey: Bytes, index: int) -> DetectionFailure | 
     for columns, rows in dict.fromkeys(others):
         if {columns, rows} != {c, r} and _shows_squares(_board_of_size(spec, columns, rows), small):
             detail = f"{columns}x{rows} squares are seen, {c}x{r} were given (squares, not corners)"
-            return DetectionFailure(index, Reason.OTHER_SIZE, detail)
+            return DetectionFailure(Reason.OTHER_SIZE, detail)
     return None
 
 

@@ -57,11 +57,11 @@ class SpreadSample:
     """Grey pictures evenly spread over a stream of unknown length; bounded in size."""
 
     def __init__(self) -> None:
-        self._sample: list[tuple[int, Bytes]] = []
+        self._sample: list[Bytes] = []
         self._came = 0
         self._every = 1
 
-    def offer(self, index: int, pixels: Bytes) -> None:
+    def offer(self, pixels: Bytes) -> None:
         """Take the next picture."""
         if self._came % self._every == 0:
             grey = downscale(as_grey(pixels), _ASKED_PX)
@@ -69,11 +69,11 @@ class SpreadSample:
                 self._sample = self._sample[::2]
                 self._every *= 2
             if self._came % self._every == 0:
-                self._sample.append((index, grey))
+                self._sample.append(grey)
         self._came += 1
 
-    def spread(self) -> Iterator[tuple[int, Bytes]]:
-        """Index and grey picture in bisection order: the first few of them lie far apart."""
+    def spread(self) -> Iterator[Bytes]:
+        """Grey pictures in bisection order: the first few of them lie far apart."""
         count = len(self._sample)
         bits = max(1, (count - 1).bit_length())
         for i in range(1 << bits):
@@ -93,7 +93,7 @@ def sight_board(
     if len(sighting.views) >= FEWEST_VIEWS:
         return sighting
     # the pictures above may all be without the board
-    variant = settle_variant(spec, [grey for _, grey in blank.spread()][:_PROBES])
+    variant = settle_variant(spec, list(blank.spread())[:_PROBES])
     if variant != spec:
         sighting, blank = _search(recording, variant, stride, progress)
     if len(sighting.views) >= FEWEST_VIEWS:
@@ -115,7 +115,7 @@ def _search(
         if view is not None:
             views[index] = view
         else:
-            blank.offer(index, pixels)
+            blank.offer(pixels)
         count += 1
         progress(f"board in {recording.name}", min(count, total), total)
     return BoardSighting(recording, spec, views, count, ()), blank
@@ -126,8 +126,8 @@ def _reasons(detector: BoardDetector, blank: SpreadSample) -> tuple[DetectionFai
     # the search for chessboards is slow
     most = _ASKED if detector.spec.kind is BoardKind.CHARUCO else _ASKED // 2
     failures: list[DetectionFailure] = []
-    for index, grey in blank.spread():
-        failures.append(diagnose_detection(detector, grey, index))
+    for grey in blank.spread():
+        failures.append(diagnose_detection(detector, grey))
         reason = failures[-1].reason
         agreed = sum(failure.reason is reason for failure in failures)
         if len(failures) == most or (reason in TELLING and agreed == _SURE):
