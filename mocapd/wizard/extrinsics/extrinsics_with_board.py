@@ -206,14 +206,13 @@ class ExtrinsicsWithBoard:
             for name, observation in instant.observations.items()
         }
         self._rest.take(instant, still)
-        if self._extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.has_enough:
+        extrinsics = self._extrinsics
+        if extrinsics is None or self._rest.since_ns < LONG_NS or not self._rest.has_enough:
             return
         views = self._rest.views()
         try:
             # a board with its back up gets an error with the remedy
-            if looks_like_floor(self._extrinsics, views) or lies_on_its_face(
-                self._extrinsics, views
-            ):
+            if looks_like_floor(extrinsics, views) or lies_on_its_face(extrinsics, views):
                 self._lay_down()
         except ConfigError as error:
             self._refusal = Problem.of(error)
@@ -242,9 +241,8 @@ class ExtrinsicsWithBoard:
         views = self._rest.views()
         index = next(iter(views.values())).index
         extrinsics = with_board(self._extrinsics, index, views)
-        self._finish(
-            extrinsics, place_in_world(extrinsics, index, "the floor", PARAMS), floor_known=True
-        )
+        made = place_in_world(extrinsics, index, "the floor", PARAMS)
+        self._finish(extrinsics, made, floor_known=True)
 
     def _skip_floor(self) -> None:
         if self._extrinsics is None or self._made is None:
