@@ -48,7 +48,7 @@ def measures(
     for i in range(50):
         away = np.array([shift_px if i > 1 else 50.0, 0.0])
         one = CameraMeasure(away, float(np.linalg.norm(away)) * 0.004, match)
-        out.append(Measure(i, {"cam0": one}, lean_rad, hips_m, np.full(3, scale)))
+        out.append(Measure({"cam0": one}, lean_rad, hips_m, np.full(3, scale)))
     return out
 
 
@@ -169,7 +169,7 @@ class LosingTracking:
     def measures(self) -> list[Measure]:
         self._arrived += 8
         one = CameraMeasure(np.array([0.02, 0.0]), 0.002, 0.9)
-        return [Measure(0, dict.fromkeys(self.rig.names, one), 0.1, 0.9, np.full(3, 1.0))]
+        return [Measure(dict.fromkeys(self.rig.names, one), 0.1, 0.9, np.full(3, 1.0))]
 
     def counts(self) -> dict[str, CameraCounts]:
         counts = CameraCounts(self._arrived, self._arrived, 0, self._arrived // 4)

@@ -51,10 +51,9 @@ class _Ring:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Window:
-    """A picture's ids (U,V) rotated along an arm about c (2,): across u (U,), along v (V,) in work px;
+    """A picture's ids (U,V) rotated along an arm about a point: across u (U,), along v (V,) in work px;
     n, a (2,): the picture's directions of u and v."""
 
-    c: Floats
     n: Floats
     a: Floats
     u: Floats
@@ -143,7 +142,7 @@ def _window(ids: NDArray[np.uint8], c: Floats, a: Floats, reach: float, across: 
     x, y = at[..., 0], at[..., 1]
     inside = (x >= 0) & (x < w) & (y >= 0) & (y < h)
     visible = np.where(inside, ids[np.clip(y, 0, h - 1), np.clip(x, 0, w - 1)], 0).astype(np.uint8)
-    return _Window(c, n, a, u, v, visible)
+    return _Window(n, a, u, v, visible)
 
 
 def _border(ring: _Ring, window: _Window, px_m: float) -> tuple[Mask, Floats] | None:

@@ -46,7 +46,6 @@ class Measure:
     floor; lengths: shoulders, upper arm and forearm relative to a mean body of this stature, NaN by outline, which
     does not constrain them."""
 
-    t_ns: int
     cameras: Mapping[str, CameraMeasure]
     upright_rad: float
     hips_m: float
@@ -119,7 +118,6 @@ class MeasuringTracker:
         )
         spine = body.joints_m[INDEX["neck"]] - body.joints_m[INDEX["hips"]]
         return Measure(
-            body.t_ns,
             {name: self._camera(name, state, track, frames) for name in track.evidence},
             float(np.arccos(np.clip(spine[1] / np.linalg.norm(spine), -1.0, 1.0))),
             float(body.joints_m[INDEX["hips"], 1]),

@@ -69,11 +69,6 @@ class BoardWatch:
         self._left: list[str] = []  # cameras of this instant not searched yet
         self._observations: dict[str, BoardObservation] = {}
 
-    @property
-    def spec(self) -> BoardSpec:
-        """The wanted board."""
-        return self._detector.spec
-
     def start(self) -> None:
         """Begin receiving frames."""
         self._hub.join(self._recent)
