@@ -171,20 +171,13 @@ def with_board(
             best, best_px = fitted, error_px
     if best is None:
         raise ConfigError("the board cannot be placed", "the room", "show more of the board")
-    both = extrinsics.bundle.scene
     scene = replace(
-        both,
-        scene_from_board=concatenate(both.scene_from_board, best.scene_from_board),
-        path=np.concatenate([both.path, best.path]),
+        scene,
+        scene_from_board=concatenate(scene.scene_from_board, best.scene_from_board),
+        path=np.concatenate([scene.path, best.path]),
     )
-    merged = Observations(
-        np.concatenate([extrinsics.obs.camera, obs.camera]),
-        np.concatenate([extrinsics.obs.view, np.full_like(obs.view, len(extrinsics.indices))]),
-        np.concatenate([extrinsics.obs.point_m, obs.point_m]),
-        np.concatenate([extrinsics.obs.pixels, obs.pixels]),
-        np.concatenate([extrinsics.obs.on_back, obs.on_back]),
-        np.concatenate([extrinsics.obs.lag, obs.lag]),
-    )
+    here = replace(obs, view=np.full_like(obs.view, len(extrinsics.indices)))
+    merged = extrinsics.obs.with_others(here)
     used = np.concatenate([extrinsics.bundle.used, np.ones(len(obs.camera), bool)])
     bundle = replace(extrinsics.bundle, scene=scene, used=used)
     return replace(extrinsics, indices=(*extrinsics.indices, index), obs=merged, bundle=bundle)

@@ -5,6 +5,7 @@ scene's frame is the first camera's.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,14 +34,15 @@ class Observations:
 
     def of(self, keep: NDArray[np.bool_]) -> "Observations":
         """Those of a mask (N,)."""
-        return Observations(
-            self.camera[keep],
-            self.view[keep],
-            self.point_m[keep],
-            self.pixels[keep],
-            self.on_back[keep],
-            self.lag[keep],
-        )
+        return Observations(*(part[keep] for part in self._parts))
+
+    def with_others(self, others: "Observations") -> "Observations":
+        """These, and then the others."""
+        return Observations(*map(np.concatenate, zip(self._parts, others._parts, strict=True)))
+
+    @property
+    def _parts(self) -> tuple[NDArray[Any], ...]:
+        return self.camera, self.view, self.point_m, self.pixels, self.on_back, self.lag
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -164,25 +164,23 @@ def _solve_rig(
     notes: list[str],
     progress: Progress,
 ) -> FolderCalibration:
-    names = [sighting.recording.name for sighting in sightings]
+    named = {sighting.recording.name: sighting for sighting in sightings}
+    names = list(named)
     progress("room", 0, 1)
     # a view that contradicts its own camera's intrinsics is an outlier of time and room, too
     views = {
-        sighting.recording.name: {
-            i: view
-            for i, view in sighting.views.items()
-            if i not in intrinsics_of[sighting.recording.name].thrown_out
+        name: {
+            i: view for i, view in sighting.views.items() if i not in intrinsics_of[name].thrown_out
         }
-        for sighting in sightings
+        for name, sighting in named.items()
     }
     aligned = align_views(views, intrinsics_of, clocks, corners_m(spec), params.most_pictures)
     instants = aligned.instants
     floor = None if floor_frame is None else _floor_instant(instants, floor_frame)
-    sizes_px = [sighting.recording.size_px for sighting in sightings]
     bundle = replace(params.extrinsics.bundle, longest_gap=aligned.longest_gap)
     extrinsics = solve_extrinsics(
         names,
-        sizes_px,
+        [sighting.recording.size_px for sighting in sightings],
         {name: replace(lens, thrown_out=()) for name, lens in intrinsics_of.items()},
         instants.views,
         spec,
@@ -202,19 +200,11 @@ def _solve_rig(
         notes += [trouble] if (trouble := gluing_trouble(made.gluing)) else []
     elif spec.two_sided:
         notes.append("no camera saw the back of the board, which was said to be two-sided")
-    reports = {
-        sighting.recording.name: _report(
-            sighting,
-            intrinsics_of[sighting.recording.name],
-            made.cameras[sighting.recording.name],
-            aligned.delay_frames(
-                sighting.recording.name,
-                names[0],
-                made.cameras[sighting.recording.name].delay_frames,
-            ),
-        )
-        for sighting in sightings
-    }
+    reports = {}
+    for name, sighting in named.items():
+        fit = made.cameras[name]
+        delay_frames = aligned.delay_frames(name, names[0], fit.delay_frames)
+        reports[name] = _report(sighting, intrinsics_of[name], fit, delay_frames)
     return FolderCalibration(
         made.rig,
         made.rms_px,

@@ -93,11 +93,12 @@ def board_poses(
     views: Mapping[int, BoardView], intrinsics: Intrinsics, board_m: Floats
 ) -> dict[int, PrintPose]:
     """By index; omits views without a valid pose."""
-    fits = {
-        index: board_pose(view, board_m, intrinsics.K, intrinsics.dist)
+    K, dist = intrinsics.K, intrinsics.dist
+    return {
+        index: PrintPose(pose, view.back)
         for index, view in views.items()
+        if (pose := board_pose(view, board_m, K, dist)) is not None
     }
-    return {i: PrintPose(pose, views[i].back) for i, pose in fits.items() if pose is not None}
 
 
 def camera_from_board(print_pose: PrintPose, back: BackPrint) -> RigidTransform:
