@@ -108,13 +108,7 @@ def solve_extrinsics(
     mirrored pictures.
     """
     board_m = corners_m(spec)
-    # a view that contradicts its own camera's intrinsics is an outlier of the extrinsics, too
-    trusted = {
-        name: {
-            i: view for i, view in views[name].items() if i not in intrinsics_of[name].thrown_out
-        }
-        for name in names
-    }
+    trusted = {name: intrinsics_of[name].trusted(views[name]) for name in names}
     if spec.two_sided:
         poses = {name: board_poses(trusted[name], intrinsics_of[name], board_m) for name in names}
         suspicion = suspect(names, poses, board_m)

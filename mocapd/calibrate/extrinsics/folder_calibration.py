@@ -167,13 +167,7 @@ def _solve_rig(
     named = {sighting.recording.name: sighting for sighting in sightings}
     names = list(named)
     progress("room", 0, 1)
-    # a view that contradicts its own camera's intrinsics is an outlier of time and room, too
-    views = {
-        name: {
-            i: view for i, view in sighting.views.items() if i not in intrinsics_of[name].thrown_out
-        }
-        for name, sighting in named.items()
-    }
+    views = {name: intrinsics_of[name].trusted(own.views) for name, own in named.items()}
     aligned = align_views(views, intrinsics_of, clocks, corners_m(spec), params.most_pictures)
     instants = aligned.instants
     floor = None if floor_frame is None else _floor_instant(instants, floor_frame)

@@ -1,6 +1,6 @@
 """A camera's intrinsics and distortion from pictures of a flat board (Zhang, A Flexible New Technique, PAMI 2000)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -60,6 +60,10 @@ class Intrinsics:
     views: tuple[int, ...]
     thrown_out: tuple[int, ...]
     focal_deviation: float
+
+    def trusted(self, views: Mapping[int, BoardView]) -> dict[int, BoardView]:
+        """Without the views that contradict this lens, by index: they are outliers of time and room, too."""
+        return {index: view for index, view in views.items() if index not in self.thrown_out}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
