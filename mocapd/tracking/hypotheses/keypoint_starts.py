@@ -3,21 +3,17 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from mocapd.body.skeleton import INDEX, OTHER_SIDE
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.limbs.two_bone_ik import LIMBS, two_bone_pose
+from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.motion_state import MotionState, turned_about_vertical
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.term import Term
-from mocapd.geometry import rotations
-from mocapd.tracking.cues.keypoints.keypoint_consensus import LEAST_CAMERAS
+from mocapd.tracking.cues.keypoints.limbs_at_keypoints import with_limbs_at_keypoints
 from mocapd.tracking.hypotheses.base import WHOLE
 from mocapd.types import Floats
 
-_KNOWN_SD_M = 0.15  # of a place where rays cross
 _LEGS = [j for name, one in LIMBS.items() if name.endswith("leg") for j in (one.lower, one.end)]
 
 
@@ -113,23 +109,6 @@ def fit_to_keypoints(
     turn_rad = keypoints.turn_rad(fitter.joints(state)[0])
     if abs(turn_rad) > params.turned_rad:
         state = turned_about_vertical(state, turn_rad)
-    state = _bent(fitter, state, keypoints, limbs)
+    state = with_limbs_at_keypoints(fitter, state, keypoints, limbs)
     terms = (*held, keypoints.trusting)
     return fitter.fit(state, (), params.loose_s, params.iterations, terms=terms).state
-
-
-def _bent(
-    fitter: Fitter, state: MotionState, keypoints: JointTerm, limbs: Collection[str]
-) -> MotionState:
-    joints_m, globals_xyzw = fitter.joints(state)
-    places_m = keypoints.places_m(joints_m[0])
-    if len(keypoints.rays) >= LEAST_CAMERAS:  # of fewer, none can be told from the others
-        crossing_m, sd_m = keypoints.crossings
-        places_m = np.where((sd_m < _KNOWN_SD_M)[:, None], crossing_m, places_m)
-    local = state.local_xyzw.copy()
-    for name in limbs:
-        limb = LIMBS[name]
-        bent = two_bone_pose(limb, fitter.model.rest_m, joints_m, globals_xyzw, places_m)
-        if bent is not None:
-            local[[limb.upper, limb.lower]] = bent
-    return replace(state, local_xyzw=rotations.canonical(local))

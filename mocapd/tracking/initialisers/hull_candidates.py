@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from mocapd.geometry.camera_model import common_place, project, to_camera
 from mocapd.tracking.cues.clothes.clothes_params import HullStartParams
@@ -48,8 +49,26 @@ def hull_candidates(
     points_m, (nx, ny, nz) = voxel_centres(space_m, p.voxel_m)
     maps = [_log_odds(labels, p) for labels in foregrounds.values()]
     inside = carve_log_odds(seeing, maps, points_m) > 0.0
-    inside[inside] = views_of(seeing, points_m[inside]) >= p.cameras
-    columns = inside.reshape(nx, ny, nz)
+    views = views_of(seeing, points_m[inside])
+    # who stands where one camera of three does not look is found as before two
+    for least in (p.cameras, 2):
+        hull = inside.copy()
+        hull[inside] = views >= least
+        found = _people(hull.reshape(nx, ny, nz), points_m, foregrounds, cameras, image_scales, p)
+        if found:
+            return found
+    return []
+
+
+def _people(
+    columns: NDArray[np.bool_],
+    points_m: Floats,
+    foregrounds: Mapping[int, Bytes],
+    cameras: Sequence[Camera],
+    image_scales: Sequence[int],
+    p: HullStartParams,
+) -> list[HullCandidate]:
+    """The candidates in a hull: of its voxels (X,Y,Z), Y upwards, those that belong to it."""
     # light on the floor makes a flat hull, which takes in no arm held out
     is_person = p.voxel_m * columns.sum(axis=1) >= p.least_high_m
     is_person |= columns[:, int((p.arms_m - p.low_m) / p.voxel_m) :].any(axis=1)

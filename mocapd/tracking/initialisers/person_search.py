@@ -10,11 +10,17 @@ from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import turned_about_vertical
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams, StartParams
+from mocapd.tracking.cues.keypoints.keypoint_consensus import agreed_keypoints
 from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
+from mocapd.tracking.cues.keypoints.limbs_at_keypoints import (
+    limbs_off_crossings,
+    with_limbs_at_keypoints,
+)
 from mocapd.tracking.initialisers.hull_candidates import HullCandidate, hull_candidates
 from mocapd.tracking.initialisers.keypoint_initialiser import KeypointCandidate, KeypointInitialiser
 from mocapd.tracking.initialisers.motion_monitor import MotionMonitor
@@ -282,7 +288,8 @@ class PersonSearch:
         return float(np.linalg.norm(fit.state.root_m - root_m)), seconds(t_ns - then_ns)
 
     def _as_person(self, fit: Fit, candidate: _SearchCandidate) -> Fit | None:
-        """The fit, turned if keypoints say so: silhouettes of cameras all around hardly tell front from back. None if the
+        """The fit, turned if keypoints say so: silhouettes of cameras all around hardly tell front from back; and with limbs
+        moved that they show elsewhere. None if the
         heatmaps of head and neck are as blurred as for furniture in all pictures that show enough keypoints."""
         p, fitter = self._params, self._silhouettes
         detect = self._joints.detector(fitter, fit.state, self._views)
@@ -305,7 +312,26 @@ class PersonSearch:
             if other.explained <= fit.explained - less:
                 break
             fit = other
-        return fit
+        return self._with_lost_limbs(fit, candidate, terms)
+
+    def _with_lost_limbs(
+        self, fit: Fit, candidate: _SearchCandidate, terms: Sequence[JointTerm]
+    ) -> Fit:
+        """The fit, with limbs laid through the keypoints on which three cameras or more agree, where it explains more: the
+        look of the clothes is learned from the first pose."""
+        fitter = self._silhouettes
+        joints_m = fitter.joints(fit.state)[0]
+        agreed = self._joints.term(
+            fitter.model, agreed_keypoints([one for term in terms for one in term.rays], joints_m)
+        )
+        lost = [name for term in agreed for name in limbs_off_crossings(term, joints_m)]
+        if not lost:
+            return fit
+        start = with_limbs_at_keypoints(fitter, fit.state, agreed[0], lost)
+        other = fit_to_blobs(
+            fitter, candidate.views, start, self._params.iterations, (self._floor, *agreed), self._params
+        )  # fmt: skip
+        return other if other.explained > fit.explained else fit
 
     def _names(self, candidate: _SearchCandidate) -> tuple[str, ...]:
         return tuple(self._views.each[i].name for i in candidate.person.blobs)

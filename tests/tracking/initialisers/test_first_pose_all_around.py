@@ -14,6 +14,8 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.tracking.initialisers import person_search
@@ -21,6 +23,7 @@ from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.types import Floats
 from mocapd.vision.foreground_kernels import BEFORE
 from tests.geometry.rigs import ring
+from tests.tracking.initialisers.test_keypoint_pose import seen_by
 from tests.tracking.initialisers.test_standing_initialiser import BODY, FACTOR, turned
 
 pytestmark = pytest.mark.kernels
@@ -113,6 +116,34 @@ def test_a_first_pose_that_faces_beside_its_keypoints_is_turned_if_that_agrees_b
     candidate: Any = SimpleNamespace(views=(), person=SimpleNamespace(blobs=range(4)))
     found = search._as_person(fit, candidate)
     assert found is (better if is_turned else fit)
+
+
+@pytest.mark.parametrize(("explained", "is_moved"), [(0.76, True), (0.68, False)])
+def test_an_arm_that_is_seen_elsewhere_is_moved_there_if_that_agrees_better(
+    monkeypatch: pytest.MonkeyPatch, explained: float, is_moved: bool
+) -> None:
+    """A first pose with one arm folded taught the tracker wrong colours for good."""
+    state = turned(0.7)
+    local = state.local_xyzw.copy()
+    local[INDEX["leftLowerArm"]] = rotations.exp(np.array([0.0, -2.4, 0.0]))
+    keypoints: Any = SimpleNamespace(
+        detector=lambda *_: int,
+        term=lambda *_: (JointTerm(BODY, [seen_by(c, FITTER.joints(state)[0]) for c in CAMERAS]),),
+    )
+    search = search_among([state], keypoints)
+    fit: Any = SimpleNamespace(state=replace(state, local_xyzw=local), explained=0.70)
+    better: Any = SimpleNamespace(state=state, explained=explained)
+    starts: list[MotionState] = []
+
+    def refit(_: object, __: object, start: MotionState, *___: object) -> object:
+        starts.append(start)
+        return better
+
+    monkeypatch.setattr(person_search, "fit_to_blobs", refit)
+    candidate: Any = SimpleNamespace(views=(), person=SimpleNamespace(blobs=range(4)))
+    assert search._as_person(fit, candidate) is (better if is_moved else fit)
+    off_m = FITTER.joints(starts[0])[0] - FITTER.joints(state)[0]
+    assert np.linalg.norm(off_m, axis=1).max() < 0.05
 
 
 def test_who_was_tracked_a_moment_ago_is_not_taken_for_somebody_else() -> None:

@@ -1,7 +1,10 @@
 """Candidates in the hull: a person apart from the light on the floor and from other people."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project
 from mocapd.tracking.cues.clothes.clothes_params import HullStartParams
 from mocapd.tracking.initialisers.hull_candidates import HullCandidate, hull_candidates
@@ -67,6 +70,16 @@ def test_legs_that_two_cameras_hardly_show_belong_to_somebody() -> None:
     (one,) = candidates(shown)
     for camera in (1, 3):
         assert share_of(one, camera, FIGURE) > 0.9
+
+
+def test_somebody_whom_one_of_three_cameras_does_not_show_is_found_by_the_others() -> None:
+    about = rotations.to_matrix(rotations.exp(np.array([0.0, np.radians(100.0), 0.0])))
+    away = replace(CAMERAS[2], R=about @ CAMERAS[2].R, t_m=about @ CAMERAS[2].t_m)
+    shown = foregrounds(FIGURE, 2) | {2: np.full_like(foregrounds(FIGURE)[2], BACKGROUND)}
+    found = hull_candidates(shown, [*CAMERAS[:2], away], [1] * 3, PARAMS)
+    assert found
+    assert np.linalg.norm(found[0].person.place_m) < 0.3
+    assert set(found[0].person.blobs) == {0, 1}
 
 
 def test_two_people_are_two_where_one_hides_the_other() -> None:
