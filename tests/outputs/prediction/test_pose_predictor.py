@@ -133,6 +133,17 @@ def test_what_does_not_follow_begins_anew(change: dict[str, object]) -> None:
     assert max(distance_m(found, other, name) for name in other.joints) < 1e-9
 
 
+def test_a_frame_timed_just_after_another_is_no_leap() -> None:
+    """A pose held while no camera delivered, then a delayed frame, which must not be timed before it."""
+    seen = [frame_at(k / 30.0, swinging, walking) for k in range(8)]
+    held = msgspec.structs.replace(seen[-1], capture_unix_ns=after(seen[-1], 0.15))
+    late = msgspec.structs.replace(
+        frame_at(8 / 30.0, swinging, walking), capture_unix_ns=held.capture_unix_ns + 1
+    )
+    found = there(told([*seen, held, late]), after(late, 0.05))
+    assert max(distance_m(found, late, name) for name in late.joints) < 0.5
+
+
 def test_what_nobody_sees_does_not_fly_off() -> None:
     seen, hidden = (
         [frame_at(k / 30.0, swinging, lambda _: np.zeros(3), sure) for k in range(8)]
