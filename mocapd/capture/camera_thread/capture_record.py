@@ -66,6 +66,7 @@ class CaptureRecord:
         """Call at the first frame after an opening: a camera that opens but sends nothing is still lost."""
         with self._lock:
             self._openings += 1
+            self._came_ns = monotonic_ns()  # else it counts as silent until `count_frame`
             self._rate.clear()
             before, self._state = self._state, CaptureState.LIVE
             self._reason, self._notice = "", place
