@@ -35,7 +35,7 @@ class BundlerParams:
     period_s: assumed of a camera before its second frame [s]
     slack_periods: how late a frame may be before its set goes without it [periods]
     longest_wait_periods: no set waits longer than this after its first frame arrived [periods]; a camera
-      with a delay beyond the others' by more is never paired
+      with a delay beyond the others' by more is never paired, nor waited for
     hysteresis_periods: by how much an established pairing may exceed half a period [periods]
     patience: sets in a row that a camera may miss before sets stop waiting for it
     camera_waits_s: by camera, how long a set waits for it after its first frame arrived [s], in place of
@@ -191,7 +191,10 @@ class Bundler:
         longest_ns = round(self._params.longest_wait_periods * oldest.period_ns)
         until_ns = oldest.head_arrival_ns + (longest_ns if own_ns is None else own_ns)
         if camera.has_received and own_ns is None:
-            until_ns = min(until_ns, expected_ns + camera.delay_ns + slack_ns)
+            arrival_ns = expected_ns + camera.delay_ns
+            if arrival_ns > until_ns:
+                return None  # it would come after the longest wait, each time
+            until_ns = min(until_ns, arrival_ns + slack_ns)
         return until_ns if now_ns < until_ns else None
 
     def _reaches(self, anchor: CameraQueue, anchor_ns: int, other: CameraQueue, ns: int) -> bool:

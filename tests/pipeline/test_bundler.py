@@ -64,6 +64,18 @@ def test_a_set_is_never_timed_before_the_one_already_out() -> None:
     assert all(later.t_ns > earlier.t_ns for earlier, later in pairs)
 
 
+@pytest.mark.parametrize("order", [("near", "far"), ("far", "near")])
+def test_a_camera_that_always_comes_too_late_holds_nobody_up(order: tuple[str, str]) -> None:
+    """A network camera beside a webcam: its frames are never in time, so a wait for them is in vain."""
+    cameras = [
+        FreeRunning("near", jitter_ns=MS, delay_ns=10 * MS),
+        FreeRunning("far", 5 * MS, jitter_ns=MS, delay_ns=100 * MS),
+    ]
+    released = run_live(Bundler(order), cameras, 3 * SECOND)[12:-4]
+    assert set(names_of(released)) == {("near",)}
+    assert all(r.at_ns == r.complete_ns for r in released)
+
+
 def test_a_lost_frame_delays_its_set_by_about_a_period_and_no_other() -> None:
     cameras = [
         FreeRunning("a"),
