@@ -99,6 +99,7 @@ class MetricsRecorder:
         """Count a body published without frames."""
         with self._lock:
             self._tracking, self._lost_reason = body.tracking, None
+            self._slowness = None  # without frames nothing is skipped
 
     def effort_changed(self, effort: Effort) -> None:
         """Set the tracker's effort."""

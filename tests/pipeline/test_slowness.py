@@ -15,13 +15,15 @@ from mocapd.doctor.checks.system_checks import check_daemons
 from mocapd.doctor.finding import Verdict
 from mocapd.outputs.messages import HEALTH, decode_health
 from mocapd.outputs.wire import MSGPACK_MIME
-from mocapd.pipeline.metrics import Metrics
+from mocapd.pipeline.collector import CollectorCounts
+from mocapd.pipeline.metrics import Metrics, MetricsRecorder
 from mocapd.pipeline.other_programs import OtherPrograms
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.pipeline.slowness import Slowness, SlownessWatch
 from mocapd.service.health import health_message
 from mocapd.service.readiness import readiness_of
 from mocapd.service.service import Snapshot
+from mocapd.tracking.base import lost_body
 from mocapd.types import Tracking
 from mocapd.web.live_json import figures_json
 from tests.control.reports import report
@@ -87,6 +89,14 @@ def test_this_machine_can_be_read() -> None:
     others.share(0)
     share = others.share(2 * NS_PER_S)
     assert math.isnan(share) or 0.0 <= share <= 1.0
+
+
+def test_without_frames_nobody_is_too_slow() -> None:
+    """All cameras are unplugged: that the tracker skipped frame sets is over, and not what the health is to say."""
+    recorder = MetricsRecorder()
+    recorder.set_slowness(SLOW_NOW)
+    recorder.absent(lost_body(0, "shirt"))
+    assert recorder.snapshot(CollectorCounts(0, 0, {}, {}, {}), 0).slowness is None
 
 
 def test_status_says_it_with_a_code_of_its_own() -> None:
