@@ -119,6 +119,8 @@ class PipelineLoop:
         self._began_ns = start_ns = monotonic_ns()
         track = self._tracker.step(frames, self._shape)
         step_ns, self._began_ns = monotonic_ns() - start_ns, None
+        if self._stopping.is_set():
+            return  # `stop` may have given up waiting, and another session publishes by now
         if track.shape is not self._shape:
             self._shape = track.shape
             self._skeleton = self._smoother.skeleton = skeleton_of(track.shape)
