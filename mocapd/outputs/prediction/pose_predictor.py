@@ -42,17 +42,19 @@ class PosePredictor:
     def __init__(self) -> None:
         self._newest: SkeletonFrame | None = None
         self._steps: list[_Step] = []  # newest first
+        self._is_held = False  # the newest frame repeats the pose before it, as no camera delivered
         self._offsets_m: dict[str, Vector] | None = (
             None  # of the newest frame: of each bone, in the parent's axes
         )
 
     def take(self, frame: SkeletonFrame) -> None:
-        """Add the newest frame. A frame that is not newer by a camera's period, of another daemon, `lost` or after a gap
-        clears the history."""
-        before = self._newest
+        """Add the newest frame. A frame that is not newer by a camera's period, of another daemon, `lost`, after a gap or
+        after a held pose clears the history."""
+        before, was_held = self._newest, self._is_held
         self._newest, self._offsets_m = frame, None
+        self._is_held = before is not None and _is_held(before, frame)
         step = None if before is None else _step(before, frame)
-        if step is None:
+        if step is None or was_held:
             self._steps = []
             return
         self._steps.insert(0, step)
@@ -144,6 +146,14 @@ def _step(before: SkeletonFrame, after: SkeletonFrame) -> _Step | None:
             turns_rad[name] = _turn(then.r, now.r)
             moves_m[name] = _move(then.p, now.p)
     return _Step(taken_s, turns_rad, moves_m)
+
+
+def _is_held(before: SkeletonFrame, after: SkeletonFrame) -> bool:
+    """True if a coasting frame has the pose before it: what a person does meanwhile is in the next frame, all at once."""
+    return after.tracking == "coasting" and all(
+        name in before.joints and (before.joints[name].p, before.joints[name].r) == (now.p, now.r)
+        for name, now in after.joints.items()
+    )
 
 
 def _turn(then: Quaternion, now: Quaternion) -> Vector:

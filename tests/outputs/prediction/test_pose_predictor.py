@@ -144,6 +144,26 @@ def test_a_frame_timed_just_after_another_is_no_leap() -> None:
     assert max(distance_m(found, late, name) for name in late.joints) < 0.5
 
 
+@pytest.mark.parametrize("away_s", [0.16, 0.24, 0.4])
+def test_after_a_held_pose_nobody_overshoots(away_s: float) -> None:
+    """While no camera delivers, the last pose is sent again. The way of all that time is not made since the last of these
+    frames."""
+    seen = [frame_at(k / 30.0, lambda _: {}, walking) for k in range(8)]
+    held = [
+        msgspec.structs.replace(
+            seen[-1], tracking="coasting", capture_unix_ns=after(seen[-1], held_s), cameras=()
+        )
+        for held_s in (0.15, 0.25, 0.35)
+        if held_s < away_s
+    ]
+    predictor = told([*seen, *held])
+    for k in range(4):
+        frame = frame_at(7 / 30.0 + away_s + k / 30.0, lambda _: {}, walking)
+        predictor.take(frame)
+        moved_m = distance_m(there(predictor, after(frame, 0.04)), frame, "hips")
+        assert moved_m < 0.06  # at 1.3 m/s it is 0.05 m
+
+
 def test_what_nobody_sees_does_not_fly_off() -> None:
     seen, hidden = (
         [frame_at(k / 30.0, swinging, lambda _: np.zeros(3), sure) for k in range(8)]
