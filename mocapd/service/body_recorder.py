@@ -14,7 +14,8 @@ from mocapd.outputs.from_body import skeleton_frame
 from mocapd.outputs.from_skeleton import is_noticeable, rest_skeleton
 from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
 from mocapd.pipeline.body_hub import BodyHub, BodySample
-from mocapd.types import Skeleton
+from mocapd.tracking.base import Track
+from mocapd.types import FrameSet, Skeleton
 
 _MOST_WAITING = 600  # queued bodies, ten seconds at 60 Hz; beyond that a slow disk loses the newest
 _LOOK_S = 0.1
@@ -50,8 +51,10 @@ class BodyRecorder:
 
     def put(self, sample: BodySample) -> None:
         """See TakesBodies."""
+        # without the pictures: a slow or full disk would hold gigabytes of them
+        track, t_ns = Track(sample.track.body, sample.track.shape), sample.frames.t_ns
         try:
-            self._waiting.put_nowait(sample)
+            self._waiting.put_nowait(BodySample(track, sample.skeleton, FrameSet(t_ns, {})))
         except queue.Full:
             self.lost += 1
 
