@@ -30,7 +30,6 @@ _FIRST_ANSWER_S = 0.15  # then the next is asked
 _ANSWER_S = 1.0  # from a node that is there
 # Of the rate that is expected of it: a node that sends more costs no more.
 _MOST_OF_RATE = 1.5
-_MANY_DROPPED = 300  # pictures beyond that, until the log says so
 _TIME_SERVICE = "look at the time service of its machine, or restart the node"
 _ORDER_S = 0.5  # an unauthorised order gets no answer
 
@@ -249,7 +248,7 @@ class RemoteSource:
             raise self._lost(link, error.what, error.fix) from None
 
     def _look_at_rate(self) -> None:
-        if self._limit.dropped >= _MANY_DROPPED and not self._said_fast:
+        if self._limit.is_exceeded and not self._said_fast:
             self._said_fast = True
             _LOG.warning(
                 "%s: its node sends more than %g pictures a second, the others are dropped -- set fps_hz of its "

@@ -30,3 +30,16 @@ def test_a_camera_at_its_rate_loses_nothing_to_a_network_that_delays() -> None:
     random = np.random.default_rng(1)
     arrivals_ns = [k * S // 30 + round(random.uniform(0, 0.06) * S) for k in range(3000)]
     assert taken(ArrivalLimit(45.0), sorted(arrivals_ns)) == pytest.approx(3000, abs=30)
+
+
+def test_a_network_that_stalls_now_and_then_is_no_node_that_sends_too_fast() -> None:
+    """A quarter of a second each minute, for hours: the log would blame the rate at the node."""
+    stalling, fast = ArrivalLimit(45.0), ArrivalLimit(45.0)
+    for minute in range(180):
+        for k in range(30 * 60):
+            stalling.take(minute * 60 * S + max(k * S // 30, S // 4))
+    assert stalling.dropped > 300
+    assert not stalling.is_exceeded
+    for k in range(60 * 60):
+        fast.take(k * S // 60)
+    assert fast.is_exceeded
