@@ -7,10 +7,12 @@ from mocapd.clock import NS_PER_S
 
 YOUNG_EVERY_NS = NS_PER_S
 ALL_EVERY_NS = 30 * NS_PER_S
+OVERDUE_NS = 2 * ALL_EVERY_NS  # then it is collected while a frame waits, too
 
 
 class IdleCollection:
-    """Within this context, garbage is collected only by `idle`.
+    """Within this context, garbage is collected only by `idle`, to be called between frames, or when it `is_overdue`: a
+    machine that is too slow has a frame waiting at any time.
 
     A full collection walks every container object; with numba, zenoh and matplotlib loaded these are
     120,000, and it takes 90 ms (measured) in the frame that triggers it. So the objects alive on entry
@@ -40,8 +42,14 @@ class IdleCollection:
                 gc.enable()
                 gc.unfreeze()
 
+    def is_overdue(self, now_ns: int) -> bool:
+        """True if nothing was collected for OVERDUE_NS."""
+        if self._young_ns is None:
+            self._young_ns = self._all_ns = now_ns
+        return now_ns - self._young_ns >= OVERDUE_NS
+
     def idle(self, now_ns: int) -> None:
-        """Called while no frame waits: collects young objects each second, all twice a minute."""
+        """Collects young objects each second, all twice a minute."""
         if self._young_ns is None or self._all_ns is None:
             self._young_ns = self._all_ns = now_ns
         if now_ns - self._all_ns >= ALL_EVERY_NS:

@@ -108,10 +108,11 @@ class PipelineLoop:
                 self._one(frames)
             elif self._absence is not None and not self._collector.closed:
                 self._none(self._absence)
-            if self._collector.idle:
-                garbage.idle(monotonic_ns())
-                if self._idle is not None:
-                    self._idle.begin()
+            now_ns, is_idle = monotonic_ns(), self._collector.idle
+            if is_idle or garbage.is_overdue(now_ns):
+                garbage.idle(now_ns)
+            if is_idle and self._idle is not None:
+                self._idle.begin()
             self._recorder.count_turn()
 
     def _one(self, frames: FrameSet) -> None:
