@@ -63,6 +63,14 @@ class CameraCounts:
     late: int
     lost: int
 
+    def __add__(self, other: "CameraCounts") -> "CameraCounts":
+        return CameraCounts(
+            self.received + other.received,
+            self.used + other.used,
+            self.late + other.late,
+            self.lost + other.lost,
+        )
+
     def since(self, before: "CameraCounts") -> "CameraCounts":
         """The frames after an earlier count."""
         return CameraCounts(

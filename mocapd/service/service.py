@@ -59,6 +59,7 @@ class Service:
         self.bodies = BodyHub(self._publisher)  # consumers of bodies join it
         self._running = RunningSession(config, session, self.bodies, self.died)
         self._earlier: Metrics | None = None  # of all sessions before
+        self._earlier_cameras: dict[str, CaptureStatus] = {}  # of the sessions that had them
         self.preparing = ""  # see Snapshot; its owner knows
         self._ended = Latch()
         self._death: BaseException | None = None
@@ -88,8 +89,8 @@ class Service:
         running = RunningSession(config, session, self.bodies, self.died)
         before, world = self._running.inputs, self.session.rig
         self._running.stop()
-        self._earlier = _sum_counts(self._running.metrics(), self._earlier)
-        self._running = running
+        earlier, cameras = _sum_counts(self._running.metrics(), self._earlier), self.statuses()
+        self._earlier, self._earlier_cameras, self._running = earlier, cameras, running
         if self._ended.is_set():
             return
         newest = self.bodies.newest()
@@ -130,8 +131,8 @@ class Service:
         return self._running.idle
 
     def statuses(self) -> dict[str, CaptureStatus]:
-        """The status of each camera, by id."""
-        return self._running.statuses()
+        """The status of each camera, by id; its counters run as long as the sessions have it."""
+        return self._statuses_of(self._running)
 
     def snapshot(self) -> Snapshot:
         """The current state; counters run since the start of the service."""
@@ -142,10 +143,14 @@ class Service:
         """Time since the outputs were opened [s]."""
         return self._outputs.uptime_s
 
+    def _statuses_of(self, running: RunningSession) -> dict[str, CaptureStatus]:
+        earlier = self._earlier_cameras
+        return {n: s.counting_on(earlier.get(n)) for n, s in running.statuses().items()}
+
     def _snapshot_of(self, running: RunningSession) -> Snapshot:
         return Snapshot(
             _sum_counts(running.metrics(), self._earlier),
-            running.statuses(),
+            self._statuses_of(running),
             {sink.name: sink.status() for sink in self._sinks},
             running.mountings(),
             self.preparing,
@@ -260,8 +265,15 @@ def _sum_counts(metrics: Metrics, earlier: Metrics | None) -> Metrics:
     """Adds the counters of earlier sessions."""
     if earlier is None:
         return metrics
+    cameras = {
+        name: replace(camera, counts=camera.counts + earlier.cameras[name].counts)
+        if name in earlier.cameras
+        else camera
+        for name, camera in metrics.cameras.items()
+    }
     return replace(
         metrics,
+        cameras=cameras,
         published=metrics.published + earlier.published,
         sets_made=metrics.sets_made + earlier.sets_made,
         sets_dropped=metrics.sets_dropped + earlier.sets_dropped,

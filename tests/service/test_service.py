@@ -71,6 +71,18 @@ def test_frames_are_numbered_on_and_counted_on(service: Service, sink: Recorder)
     assert not service.wait(0.0)
 
 
+def test_a_camera_is_counted_on_over_a_reload(service: Service) -> None:
+    """As its messages say: pictures since the start."""
+    assert eventually(lambda: service.statuses()["a"].frames > 5)
+    service.replace(config_of(), session_of("a", "c"))
+    one, counts = service.snapshot().cameras["a"], service.snapshot().metrics.cameras["a"].counts
+    assert one.frames > 5
+    assert counts.received > 0
+    assert service.statuses()["a"].frames >= one.frames
+    now = {message.camera: message.frames for message in service.camera_messages()}
+    assert now["a"] >= one.frames
+
+
 class HeirTracker(CannedTracker):
     """Remembers whose body it was given."""
 

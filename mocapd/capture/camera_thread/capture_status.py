@@ -1,6 +1,6 @@
 """The status of one camera's capture thread."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 SILENT_S = 1.0  # a live camera without a frame for so long is reported [s]
@@ -50,3 +50,10 @@ class CaptureStatus:
     def trouble(self) -> str:
         """The trouble in words, for users; empty without trouble."""
         return f"silent for {self.silent_s:.0f} s" if self.is_silent else self.reason or self.notice
+
+    def counting_on(self, earlier: "CaptureStatus | None") -> "CaptureStatus":
+        """With the counters of the same camera's earlier thread added."""
+        if earlier is None:
+            return self
+        frames, torn = self.frames + earlier.frames, self.torn + earlier.torn
+        return replace(self, frames=frames, torn=torn, reopens=self.reopens + earlier.reopens)
