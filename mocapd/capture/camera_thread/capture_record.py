@@ -16,14 +16,16 @@ _LOG = logging.getLogger(__name__)
 class CaptureRecord:
     """The record of one camera from start to stop. Logs each change of state once.
 
-    Rate limit: a loose plug must not fill the log for months. After ten losses within ten minutes further losses
-    are logged as debug until the rate falls.
+    Rate limit: a loose plug, or a room as dark as the limit of black, must not fill the log for months. After ten losses
+    or notices within ten minutes further ones are logged as debug until the rate falls.
     """
 
     def __init__(self, camera: str) -> None:
         self._camera = camera
         self._losses = RestartBudget(most=10, within_s=600.0)  # that are logged
         self._level = logging.WARNING
+        self._notices = RestartBudget(most=10, within_s=600.0)  # that are logged
+        self._notice_level = logging.WARNING
         self._lock = threading.Lock()  # guards what follows; held for moments only
         self._state = CaptureState.OPENING
         self._reason = ""
@@ -87,9 +89,12 @@ class CaptureRecord:
         with self._lock:
             self._notice = notice or place
         if notice:
-            _LOG.warning("%s: %s", self._camera, notice)
+            is_many = self._notices.spend(monotonic_ns())
+            self._notice_level = logging.DEBUG if is_many else logging.WARNING
+            _LOG.log(self._notice_level, "%s: %s", self._camera, notice)
         else:
-            _LOG.info("%s: its pictures are as they should be again", self._camera)
+            level = logging.INFO if self._notice_level == logging.WARNING else logging.DEBUG
+            _LOG.log(level, "%s: its pictures are as they should be again", self._camera)
 
     def mark_lost(self, error: MocapdError) -> bool:
         """Changes the state to lost; True if it was another state before.
