@@ -98,6 +98,10 @@ class CameraLost(MocapdError):
     exit_code = 69
 
 
+class CameraClosed(CameraLost):
+    """It was closed on request, as to open it in another mode: no failure."""
+
+
 class EndOfStream(MocapdError):
     """A recorded source has no further frame."""
 

@@ -20,7 +20,8 @@ class Source(Protocol):
         ...
 
     def read(self) -> Frame:
-        """The next frame, waiting for it. Raises CameraLost (reopen it) or EndOfStream (it is over)."""
+        """The next frame, waiting for it. Raises CameraLost (reopen it), CameraClosed (the same, on request), or EndOfStream
+        (it is over)."""
         ...
 
     def close(self) -> None:

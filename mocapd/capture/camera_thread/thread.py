@@ -17,6 +17,7 @@ from mocapd.capture.camera_thread.frame_faults import FrameFaults
 from mocapd.capture.camera_thread.reopening import BackOff, RestartBudget
 from mocapd.clock import monotonic_ns, nanoseconds, seconds
 from mocapd.errors import (
+    CameraClosed,
     CameraLost,
     ConfigError,
     EndOfStream,
@@ -271,7 +272,8 @@ class CaptureThread:
                 self._hang
             )  # our own thread holds the device: ending another program does not help
         ours = self._node is None or not self._node.camera_failed
-        spent = delivered and there and ours and self._budget.spend(monotonic_ns())
+        failed = delivered and not isinstance(error, CameraClosed)
+        spent = failed and there and ours and self._budget.spend(monotonic_ns())
         if spent:
             error = self._budget.quarantine_error(error, self._plug is not None)
         self._report_loss(error)

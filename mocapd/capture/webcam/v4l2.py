@@ -28,7 +28,7 @@ from mocapd.capture.webcam.frame_numbers import FrameNumbers
 from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.webcams import DEV, SYSFS, find_webcam
 from mocapd.clock import NS_PER_S, monotonic_ns
-from mocapd.errors import CameraLost, MalformedError, UnavailableError
+from mocapd.errors import CameraClosed, CameraLost, MalformedError, UnavailableError
 from mocapd.types import Bytes, Frame
 
 _LOG = logging.getLogger(__name__)
@@ -132,7 +132,7 @@ class V4l2Source:
         if not self._openings.take(
             number, capture
         ):  # another mode may have been asked for meanwhile
-            raise CameraLost(
+            raise CameraClosed(
                 "was closed while it was opened", self.name, "it is opened again by itself"
             )
         self.negotiated = replace(got, controls=got.controls + further)
@@ -148,7 +148,7 @@ class V4l2Source:
         """
         guarded, negotiated = self._openings.current, self.negotiated
         if guarded is None or negotiated is None:
-            raise CameraLost("is closed", self.name, "it is opened again by itself")
+            raise CameraClosed("is closed", self.name, "it is opened again by itself")
         began_ns = monotonic_ns()
         while True:
             with guarded as capture:
@@ -175,7 +175,7 @@ class V4l2Source:
         waited_s = (monotonic_ns() - began_ns) / NS_PER_S
         where = f"{self.name} ({self._where})"
         if closed:
-            raise CameraLost("was closed", where, "it is opened again by itself")
+            raise CameraClosed("was closed", where, "it is opened again by itself")
         if waited_s > 0.5:
             raise CameraLost(f"sent nothing for {waited_s:.1f} s", where, "unplug and replug it")
         if not self._delivered and negotiated.node.exists():  # ENOSPC, which OpenCV swallows
