@@ -15,7 +15,7 @@ MOST_AHEAD_S = 0.1  # longest extrapolation [s]
 
 _NS_PER_S = 1_000_000_000
 _MOST_GAP_S = 0.25  # between frames; a longer gap clears the history [s]
-_LEAST_GAP_S = 1e-3  # a frame that follows sooner is older, and was only timed after the last [s]
+_LEAST_GAP_S = 1e-3  # a frame that follows sooner is of the same instant: no motion between [s]
 _MOST_LAG_NS = 50_000_000  # largest smoothing lag that is compensated
 _MOST_FRAMES = 16  # of the history, at any frame rate
 _SURE = 0.3  # confidence from which a joint's motion counts fully; below, in proportion
@@ -48,14 +48,16 @@ class PosePredictor:
         )
 
     def take(self, frame: SkeletonFrame) -> None:
-        """Add the newest frame. A frame that is not newer by a camera's period, of another daemon, `lost`, after a gap or
-        after a held pose clears the history."""
+        """Add the newest frame. A frame that is not newer, of another daemon, `lost`, after a gap or after a held pose
+        clears the history; one of the same instant replaces the last."""
         before, was_held = self._newest, self._is_held
         self._newest, self._offsets_m = frame, None
         self._is_held = before is not None and _is_held(before, frame)
         step = None if before is None else _step(before, frame)
         if step is None or was_held:
             self._steps = []
+            return
+        if step.taken_s < _LEAST_GAP_S:
             return
         self._steps.insert(0, step)
         window_s, count = 0.0, 0
@@ -130,7 +132,7 @@ def _parents_first(joints: Mapping[str, Joint]) -> list[str]:
 def _step(before: SkeletonFrame, after: SkeletonFrame) -> _Step | None:
     """None where the frames are not consecutive frames of one person."""
     taken_s = (after.capture_unix_ns - before.capture_unix_ns) / _NS_PER_S
-    if not _LEAST_GAP_S <= taken_s <= _MOST_GAP_S or not (before.joints and after.joints):
+    if not 0.0 < taken_s <= _MOST_GAP_S or not (before.joints and after.joints):
         return None
     if (before.instance, before.person) != (after.instance, after.person):
         return None

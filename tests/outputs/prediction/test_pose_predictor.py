@@ -144,6 +144,19 @@ def test_a_frame_timed_just_after_another_is_no_leap() -> None:
     assert max(distance_m(found, late, name) for name in late.joints) < 0.5
 
 
+def test_cameras_of_several_rates_give_two_frames_of_an_instant_and_a_steady_prediction() -> None:
+    """A set whose newest picture is older than the last set's is timed 1 ns after it."""
+    predictor = PosePredictor()
+    for k in range(20):
+        for t_s in (k / 30.0, k / 30.0 + 1e-9, k / 30.0 + 0.012):
+            frame = frame_at(t_s, swinging, walking)
+            predictor.take(frame)
+            truth = frame_at(t_s + AHEAD_S, swinging, walking)
+            found = there(predictor, truth.capture_unix_ns)
+            if k > 5:
+                assert distance_m(found, truth, "hips") < 0.5 * distance_m(frame, truth, "hips")
+
+
 @pytest.mark.parametrize("away_s", [0.16, 0.24, 0.4])
 def test_after_a_held_pose_nobody_overshoots(away_s: float) -> None:
     """While no camera delivers, the last pose is sent again. The way of all that time is not made since the last of these
