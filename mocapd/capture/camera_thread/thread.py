@@ -42,7 +42,8 @@ class Mailbox(Protocol):
 
 
 class Presence(Protocol):
-    """Receives every loss of a camera before its next frame; called in the capture thread, must not block."""
+    """Receives every loss of a camera before its next frame, unless it was closed on request and opens again; called in
+    the capture thread, must not block."""
 
     def went(self, camera: str, /) -> None: ...
 
@@ -90,6 +91,7 @@ class CaptureThread:
         self._generation = 0  # of the reading thread; earlier generations were abandoned
         self._called_ns: int | None = None  # start of the current call of the driver
         self._renewal = ""  # reason of a requested reopening
+        self._is_untold = False  # a loss that `presence` was not told of
         self._plugging = ""  # see Pluggable
         self._stuck: list[threading.Thread] = []  # abandoned threads
         self._hang = CameraLost("")  # reported while one of them hangs
@@ -225,6 +227,7 @@ class CaptureThread:
                 return
             if first:
                 self._record.mark_live(self._place())
+                self._is_untold = False
             self._record.count_frame(frame)
             first = False
             self._mailbox.put(frame)
@@ -311,5 +314,9 @@ class CaptureThread:
         return self._counts_torn.torn if self._counts_torn is not None else 0
 
     def _report_loss(self, error: MocapdError) -> None:
-        if self._record.mark_lost(error) and self._presence is not None:
+        self._is_untold |= self._record.mark_lost(error)
+        if isinstance(error, CameraClosed):
+            return  # by us; it has gone only if it then does not open
+        if self._is_untold and self._presence is not None:
             self._presence.went(self._source.name)
+        self._is_untold = False
