@@ -84,6 +84,22 @@ def test_a_frame_without_the_board_is_no_floor(pictures: Path) -> None:
         calibrate_folder(pictures, SPEC, quiet, floor_frame=99)
 
 
+@pytest.mark.parametrize(
+    ("params", "frame"),
+    [
+        (FolderParams(most_pictures=5), 12),  # thinned to the first five
+        (FolderParams(most_pictures=7, densely=1), 13),  # every second one is examined
+    ],
+)
+def test_the_floor_frame_of_a_long_recording_is_used(
+    pictures: Path, params: FolderParams, frame: int
+) -> None:
+    found = calibrate_folder(pictures, SPEC, quiet, floor_frame=frame, params=params)
+    assert found.notes == ()
+    for true, camera in zip(RIG, found.rig.cameras, strict=True):
+        assert np.linalg.norm(centre(true) - centre(camera)) <= 0.03
+
+
 def copied(
     pictures: Path,
     to: Path,

@@ -39,8 +39,10 @@ def align_views(
     clocks: Mapping[str, RecordingTimes],
     board_m: Floats,
     most: int,
+    kept: int | None = None,
 ) -> AlignedViews:
-    """`views[camera][index]` by instant, at most so many instants. Raises ConfigError, see `align_times`."""
+    """`views[camera][index]` by instant, at most so many instants, and that of the picture `kept`. Raises ConfigError, see
+    `align_times`."""
     stamps_s, tracks = {}, {}
     for name, own in views.items():
         stamps = clocks[name].stamps_s
@@ -53,7 +55,7 @@ def align_views(
     start_s = min(clocks[times.reference].stamps_s.values())
     # parts of a frame matter only in motion
     in_step = all(t.followed for t in tracks.values()) and times.farthest_s < IN_STEP * period_s
-    instants = gather(views, times.times_s, period_s, start_s, most, in_step)
+    instants = gather(views, times.times_s, period_s, start_s, most, in_step, kept)
     return AlignedViews(instants, times, _FOLLOWED_GAP if followed else 1.5)
 
 

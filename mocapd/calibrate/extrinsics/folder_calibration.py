@@ -112,6 +112,8 @@ def calibrate_folder(
             notes.append(sighting.variant_note)
             spec = sighting.spec
         sightings.append(sighting)
+    if floor_frame is not None:
+        floor_frame = _examined_frame(sightings, floor_frame, stride)
     return calibrate_sightings(sightings, clocks, spec, progress, floor_frame, params, notes)
 
 
@@ -148,6 +150,13 @@ def _stride(
     return max(1, min(even, int(1.0 / (params.least_hz * slowest_s))))
 
 
+def _examined_frame(sightings: Sequence[BoardSighting], floor_frame: int, stride: int) -> int:
+    """The frame, or the nearest with the board where the stride of a long recording leaves it out."""
+    indices = {index for sighting in sightings for index in sighting.views}
+    nearest = min(sorted(indices), key=lambda index: abs(index - floor_frame), default=floor_frame)
+    return nearest if abs(nearest - floor_frame) < stride else floor_frame
+
+
 def _solve_camera(one: BoardSighting, board_m: Floats, params: FolderParams) -> Intrinsics:
     size_px = one.recording.size_px
     views = choose_views(list(one.views.values()), size_px, params.choice)
@@ -168,7 +177,9 @@ def _solve_rig(
     names = list(named)
     progress("room", 0, 1)
     views = {name: intrinsics_of[name].trusted(own.views) for name, own in named.items()}
-    aligned = align_views(views, intrinsics_of, clocks, corners_m(spec), params.most_pictures)
+    aligned = align_views(
+        views, intrinsics_of, clocks, corners_m(spec), params.most_pictures, floor_frame
+    )
     instants = aligned.instants
     floor = None if floor_frame is None else _floor_instant(instants, floor_frame)
     bundle = replace(params.extrinsics.bundle, longest_gap=aligned.longest_gap)

@@ -24,11 +24,7 @@ class Instants:
 
     def of_picture(self, index: int) -> int | None:
         """The instant of a picture with that index, by the first camera that has it."""
-        for own in self.source.values():
-            for instant, picture in own.items():
-                if picture == index:
-                    return instant
-        return None
+        return _instant_of(self.source, index)
 
 
 def gather(
@@ -38,10 +34,11 @@ def gather(
     start_s: float,
     most: int,
     in_step: bool,
+    kept: int | None = None,
 ) -> Instants:
     """Instants every `period_s` from `start_s` on, each with the nearest picture of each camera. More than `most`
     instants are thinned: evenly for cameras in_step, which gives the board at the most places; otherwise to bursts, which
-    allow estimating motion."""
+    allow estimating motion. `kept`: the index of a picture whose instant stays."""
     lags: dict[str, dict[int, float]] = {name: {} for name in views}
     source: dict[str, dict[int, int]] = {name: {} for name in views}
     for name, own in views.items():
@@ -56,6 +53,8 @@ def gather(
     every = np.array(sorted({instant for own in lags.values() for instant in own}), dtype=np.int64)
     late = max((abs(lag) for own in lags.values() for lag in own.values()), default=0.0)
     chosen = set(_thin(every, most, in_step and late < IN_STEP).tolist())
+    if kept is not None and (instant_kept := _instant_of(source, kept)) is not None:
+        chosen.add(instant_kept)
     return Instants(
         {
             name: {i: views[name][k] for i, k in sorted(own.items()) if i in chosen}
@@ -65,6 +64,14 @@ def gather(
         {name: {i: k for i, k in own.items() if i in chosen} for name, own in source.items()},
         period_s,
     )
+
+
+def _instant_of(source: Mapping[str, Mapping[int, int]], index: int) -> int | None:
+    for own in source.values():
+        for instant, picture in own.items():
+            if picture == index:
+                return instant
+    return None
 
 
 def _thin(instants: Ints, most: int, in_step: bool) -> Ints:
