@@ -1,5 +1,6 @@
 """Why a recording does not show its board: the reason that fits, though most pictures are without any board."""
 
+import weakref
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 from mocapd.calibrate.board.board_detection import BoardDetector, DetectionFailure, Reason
-from mocapd.calibrate.board.board_recordings import find_recordings
+from mocapd.calibrate.board.board_recordings import Recording, find_recordings
 from mocapd.calibrate.board.detection_diagnostics import diagnose_detection, most_telling
 from mocapd.calibrate.extrinsics import board_sighting
 from mocapd.calibrate.extrinsics.board_sighting import (
@@ -151,6 +152,23 @@ def test_a_variant_that_is_shown_at_the_end_alone_is_found(
 def test_a_plain_wall_is_not_called_blurred(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="no board in the picture -- show the board"):
         refuse_unseen([sighted(tmp_path, SPEC, PRINT, ())])
+
+
+def test_of_a_video_that_does_not_say_its_length_few_pictures_are_in_memory() -> None:
+    shown: list[weakref.ref[Bytes]] = []
+    most = 0
+
+    class Unending(Recording):
+        def pictures(self, stride: int = 1) -> Iterator[tuple[int, Bytes]]:
+            nonlocal most
+            for index in range(0, 60, stride):
+                pixels = np.full((48, 64, 3), index, np.uint8)
+                shown.append(weakref.ref(pixels))
+                most = max(most, sum(picture() is not None for picture in shown))
+                yield index, pixels
+
+    sight_board(Unending("cam0", Path("cam0.mjpeg"), 0, (64, 48)), SPEC, 1, quiet)
+    assert most <= 10
 
 
 def test_a_second_without_a_board(shared_dir: Path) -> None:

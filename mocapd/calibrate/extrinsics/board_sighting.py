@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 
 from mocapd.calibrate.board.board_detection import (
     BoardDetector,
@@ -87,7 +88,8 @@ def sight_board(
 ) -> BoardSighting:
     """Looks for the board in every `stride`-th picture of a recording. Raises InputError (damaged)."""
     step = max(1, recording.frames // (stride * _PROBES)) * stride
-    probes = [pixels for _, pixels in recording.pictures(step)][:_PROBES]
+    # no more of them in memory: some videos do not say how many there are
+    probes = [pixels for _, pixels in islice(recording.pictures(step), _PROBES)]
     spec = settle_variant(spec, probes)
     sighting, blank = _search(recording, spec, stride, progress)
     if len(sighting.views) >= FEWEST_VIEWS:
