@@ -204,6 +204,22 @@ def test_moments_of_both_cameras_are_kept_for_the_room(tmp_path: Path) -> None:
         assert all(view.index == index for index, view in own.items())
 
 
+def test_views_of_a_second_visit_are_not_of_the_moments_of_the_first(tmp_path: Path) -> None:
+    shown = Shown(tmp_path)
+    shown.show(held_pictures()[:3])
+    shown.show([*to(0, close_pictures(0)), *to(1, close_pictures(1))])
+    before = shown.context.draft.board_views["cam0"]
+    shown.step.leave()
+    shown.step = IntrinsicsStep(shown.context)
+    shown.step.enter()
+    do(shown.step, "use_saved", {"camera": "cam0"})
+    shown.show([*held_pictures()[5:8], *to(1, close_pictures(1))])
+    views = shown.context.draft.board_views
+    assert views["cam0"] == before
+    assert len(views["cam1"]) >= 10
+    assert not views["cam0"].keys() & views["cam1"].keys()
+
+
 def test_the_ruler_scales_the_board_and_keeps_the_pictures(tmp_path: Path) -> None:
     shown = Shown(tmp_path, cameras=1)
     shown.show(to(0, close_pictures(0)[:2]))

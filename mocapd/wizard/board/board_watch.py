@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from mocapd.calibrate.board.board_detection import BoardDetector
 from mocapd.calibrate.board.board_instant import BoardInstant, BoardObservation, motion_px
+from mocapd.calibrate.board.board_sightings import Views
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.types import Floats, Frame
@@ -18,6 +19,12 @@ _KEPT = 4  # frames of a camera, for picking simultaneous ones
 _STOPPED_NS = 700_000_000  # behind the newest of all: the camera has stopped
 _AT_ONCE = 2  # pictures searched in one tick
 _SHOWN_NS = 400_000_000  # how long corners stay drawn after the last detection
+
+
+def index_after(earlier: Views) -> int:
+    """Where the indices of new sightings begin: views of one index are simultaneous, so none of earlier ones."""
+    indices = (index for own in earlier.values() for index in own)
+    return INDEX_STEP * (max(indices, default=0) // INDEX_STEP + 1)
 
 
 class RecentFrames:

@@ -28,7 +28,7 @@ from mocapd.calibrate.extrinsics.live_extrinsics import PARAMS, solve_live
 from mocapd.errors import ConfigError, InputError, MocapdError, Problem
 from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import usual_board
-from mocapd.wizard.board.board_watch import INDEX_STEP, BoardWatch
+from mocapd.wizard.board.board_watch import BoardWatch, index_after
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
@@ -66,12 +66,9 @@ class ExtrinsicsWithBoard:
         self._names = {camera.id: camera.label or camera.id for camera in draft.cameras}
         self._spec = draft.board or usual_board()
         self._collection = self._start_over()
-        indices = {index for own in draft.board_views.values() for index in own}
-        self._earlier = frozenset(indices)
-        first = INDEX_STEP * (max(indices, default=0) // INDEX_STEP + 1)
-        self._watch = BoardWatch(
-            context.hub, [camera.id for camera in self._cameras], self._spec, first
-        )
+        self._earlier = frozenset(index for own in draft.board_views.values() for index in own)
+        first = index_after(draft.board_views)
+        self._watch = BoardWatch(context.hub, self._names, self._spec, first)
         self._advice = BoardAdvice(context, lambda _spec: None)
         self._rest = BoardAtRest()
         self._stage = BoardPhase.COLLECT

@@ -17,7 +17,7 @@ from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError, InputError, MocapdError, Problem
 from mocapd.wizard.board.board_advice import BoardAdvice
 from mocapd.wizard.board.board_form import board_of, form_of, same_print, scaled_board, usual_board
-from mocapd.wizard.board.board_watch import BoardWatch
+from mocapd.wizard.board.board_watch import BoardWatch, index_after
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
@@ -54,7 +54,9 @@ class IntrinsicsStep:
             raise InputError("no camera has been chosen", "lens", "do the step Cameras first")
         self._context = context
         self._spec = context.draft.board or usual_board()
-        self._watch = BoardWatch(context.hub, [camera.id for camera in cameras], self._spec)
+        # the views of an earlier visit stay for the cameras whose lens stays
+        first = index_after(context.draft.board_views)
+        self._watch = BoardWatch(context.hub, [camera.id for camera in cameras], self._spec, first)
         self._advice = BoardAdvice(context, self._found_variant)
         self._note = ""
         self._now_ns = 0
