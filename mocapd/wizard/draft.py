@@ -101,5 +101,10 @@ def with_cameras(draft: Draft, cameras: tuple[DraftCamera, ...]) -> Draft:
     )
     names = {camera.id for camera in cameras}
     if draft.rig is not None and (set(draft.rig.names) != names or len(same_size) < len(cameras)):
-        draft = replace(draft, rig=None, extrinsics_quality=None, floor_known=False)
+        draft = without_room(draft)
     return draft
+
+
+def without_room(draft: Draft) -> Draft:
+    """The draft without extrinsics, which need measuring again."""
+    return replace(draft, rig=None, extrinsics_quality=None, floor_known=False)

@@ -84,5 +84,7 @@ def _body(context: "Context") -> "Step":
 
 
 def only(steps: Mapping[StepName, MakeStep], step: StepName) -> Mapping[StepName, MakeStep]:
-    """The steps for repeating one: that one, and the check that saves it."""
-    return {name: make for name, make in steps.items() if name in (step, StepName.CHECK)}
+    """The steps for repeating one: that one, and the check that saves it; after the lens the room, which a new lens makes
+    invalid."""
+    wanted = {step, StepName.CHECK} | ({StepName.ROOM} if step is StepName.LENS else set())
+    return {name: make for name, make in steps.items() if name in wanted}

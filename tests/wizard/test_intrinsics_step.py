@@ -7,11 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mocapd.body.shape import N_FACTORS
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import InputError, MocapdError
-from mocapd.types import Bytes
+from mocapd.types import Bytes, Rig
 from mocapd.wizard.board.board_form import usual_board
-from mocapd.wizard.draft import Draft
+from mocapd.wizard.draft import Draft, ExtrinsicsQuality
 from mocapd.wizard.intrinsics.intrinsics_step import IntrinsicsStep
 from mocapd.wizard.step import Scene, StepState
 from tests.wizard.board_pictures import (
@@ -234,6 +236,43 @@ def test_the_ruler_scales_the_board_and_keeps_the_pictures(tmp_path: Path) -> No
     found = shown.context.draft.board
     assert found is not None
     assert found.square_m == pytest.approx(0.07)
+
+
+def test_another_size_of_the_board_needs_room_and_proportions_again(tmp_path: Path) -> None:
+    shown = with_room(Shown(tmp_path, cameras=1))
+    do(shown.step, "use_saved")
+    before = shown.context.draft
+    do(shown.step, "ruler", {"mm": 97})
+    after = shown.context.draft
+    assert None not in (before.rig, before.extrinsics_quality)
+    assert (after.rig, after.extrinsics_quality, after.factors) == (None, None, None)
+
+
+def test_a_new_lens_needs_the_room_again(tmp_path: Path) -> None:
+    shown = with_room(Shown(tmp_path, cameras=1))
+    shown.show(to(0, close_pictures(0)))
+    assert shown.step.view().state is StepState.DONE
+    assert shown.context.draft.rig is None
+    assert shown.context.draft.factors is not None
+
+
+def with_room(shown: Shown) -> Shown:
+    """The same, in a setup with a lens, a room by the board, and proportions."""
+    camera = RIG[0]
+    lens = Intrinsics(
+        camera.size_px, camera.K, camera.dist, np.ones(5, bool), 0.2, 0.2, (), (), 0.001
+    )
+    shown.context.draft = replace(
+        shown.context.draft,
+        intrinsics={camera.name: lens},
+        rig=Rig((camera,)),
+        extrinsics_quality=ExtrinsicsQuality("board", 0.2, {}, 0.3),
+        factors=np.ones(N_FACTORS),
+    )
+    shown.step.leave()
+    shown.step = IntrinsicsStep(shown.context)
+    shown.step.enter()
+    return shown
 
 
 def test_without_a_board_the_one_that_is_printed_is_expected(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """Converts the board to and from the page's form: lengths in millimetres, and the scale by a ruler."""
 
+import math
 from dataclasses import replace
 
 import msgspec
@@ -38,6 +39,11 @@ def scaled_board(spec: BoardSpec, ruler_mm: float) -> BoardSpec:
 def same_print(a: BoardSpec, b: BoardSpec) -> bool:
     """Whether both have the same corners: all but the scale is equal."""
     return replace(a, square_m=0.1, marker_m=0.05) == replace(b, square_m=0.1, marker_m=0.05)
+
+
+def is_rescaled(a: BoardSpec, b: BoardSpec) -> bool:
+    """Whether both have the same corners at another scale, beyond the rounding of the form."""
+    return same_print(a, b) and not math.isclose(a.square_m, b.square_m, rel_tol=1e-3)
 
 
 def form_of(spec: BoardSpec) -> dict[str, Json]:

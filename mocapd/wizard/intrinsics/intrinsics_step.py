@@ -16,11 +16,19 @@ from mocapd.calibrate.intrinsics.view_picking import PickedViews
 from mocapd.calibration.board_spec import BoardSpec, corners_m
 from mocapd.errors import ConfigError, InputError, MocapdError, Problem
 from mocapd.wizard.board.board_advice import BoardAdvice
-from mocapd.wizard.board.board_form import board_of, form_of, same_print, scaled_board, usual_board
+from mocapd.wizard.board.board_form import (
+    board_of,
+    form_of,
+    is_rescaled,
+    same_print,
+    scaled_board,
+    usual_board,
+)
 from mocapd.wizard.board.board_watch import BoardWatch, index_after
 from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
+from mocapd.wizard.draft import without_room
 from mocapd.wizard.intrinsics.intrinsics_verbs import (
     LENS,
     Board,
@@ -221,7 +229,14 @@ class IntrinsicsStep:
     def _write_when_done(self) -> None:
         if not self._done():
             return
-        draft = self._context.draft
+        lenses = {id_: camera.intrinsics for id_, camera in self._cameras.items()}
+        draft, quality = self._context.draft, self._context.draft.extrinsics_quality
+        by_board = quality is not None and quality.method == "board"
+        # what was measured by the board at a wrong size, or by another lens, is wrong, too
+        if by_board and draft.board is not None and is_rescaled(draft.board, self._spec):
+            draft = without_room(replace(draft, factors=None))
+        if any(lens is not draft.intrinsics.get(id_) for id_, lens in lenses.items()):
+            draft = without_room(draft)
         earlier = draft.board_views if draft.board and same_print(draft.board, self._spec) else {}
         of_draft = {
             id_
@@ -238,11 +253,7 @@ class IntrinsicsStep:
                 id_: earlier.get(id_, {}) if id_ in of_draft else own
                 for id_, own in self._sightings.views.items()
             },
-            intrinsics={
-                id_: camera.intrinsics
-                for id_, camera in self._cameras.items()
-                if camera.intrinsics is not None
-            },
+            intrinsics={id_: lens for id_, lens in lenses.items() if lens is not None},
             intrinsics_saved=frozenset(saved | (draft.intrinsics_saved & of_draft)),
         )
 
