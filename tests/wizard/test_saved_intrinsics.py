@@ -55,6 +55,7 @@ def test_a_lens_is_offered_to_the_camera_that_it_was_measured_of(tmp_path: Path)
     assert step.view().state is StepState.DONE
     np.testing.assert_allclose(context.draft.intrinsics["left"].K, RIG[0].K, rtol=1e-6)
     np.testing.assert_allclose(context.draft.intrinsics["left"].dist, RIG[0].dist, atol=1e-6)
+    assert len(context.draft.intrinsics["left"].views) == 12
     assert context.draft.intrinsics_saved == {"left"}
     do(step, "measure", {"camera": "left"})
     assert step.view().state is StepState.WAITING

@@ -67,7 +67,7 @@ class SavedIntrinsics(msgspec.Struct, frozen=True, kw_only=True):
             np.array(self.free),
             self.rms_px,
             self.held_out_px,
-            (),
+            tuple(range(self.views)),
             (),
             self.focal_deviation,
         )
