@@ -47,13 +47,18 @@ def test_views_that_contradict_the_others_are_thrown_out() -> None:
     assert abs(lens.K[0, 0] / CAMERA.K[0, 0] - 1) < 0.005
 
 
-def test_parallel_views_are_refused() -> None:
+@pytest.mark.parametrize("wrong", [0, 1])
+def test_parallel_views_are_refused(wrong: int) -> None:
     rng = np.random.default_rng(1)
     facing = CAMERA.R.T  # the board faces the camera squarely, wherever it is
     places = TARGET_M + rng.uniform(-0.15, 0.15, (15, 3))
-    poses = [(facing, place - facing @ middle_m()) for place in places]
+    views = views_at([(facing, place - facing @ middle_m()) for place in places])
+    for i in range(wrong):  # it seems tilted, until it is thrown out
+        x, y = (views[i].corners_px - SIZE_PX[0] / 2).T
+        bent = SIZE_PX[0] / 2 + np.column_stack([0.6 * x, y + 30.0 * np.sin(x / 60.0)])
+        views[i] = replace(views[i], corners_px=bent)
     with pytest.raises(ConfigError, match="tilt") as refused:
-        solve_intrinsics(views_at(poses), BOARD_M, SIZE_PX, "cam0")
+        solve_intrinsics(views, BOARD_M, SIZE_PX, "cam0")
     assert refused.value.where == "cam0"
 
 

@@ -105,6 +105,9 @@ def solve_intrinsics(
             where,
             "give the size of the board as it is printed, and keep the board flat",
         )
+    if bad.any():  # an outlier may have been the only view with another tilt
+        first = _solve(inliers, board_m, size_px, _MODELS[1], where)
+        _refuse_parallel(first, inliers, where, limits)
     model, held_out_px = _best_model(inliers, board_m, size_px, where, first)
     solution = _solve(inliers, board_m, size_px, model, where, first)
     deviation = float((solution.deviations[:2] / np.diag(solution.K)[:2]).max())
@@ -227,7 +230,7 @@ def _refuse_parallel(
     away = [-1.0 if view.back else 1.0 for view in views]  # of the visible side
     normals = np.stack([s * R[:, 2] for s, R in zip(away, solution.rotations, strict=True)])
     cosines = np.clip(normals @ normals.T, -1.0, 1.0)
-    # a percentile, so that one wrong view does not count as a tilt
+    # a percentile, so that of many views one wrong one does not count as a tilt; of few it does, until it is thrown out
     if np.percentile(np.arccos(cosines), 95) < limits.least_tilt_rad:
         raise _parallel(where)
 
