@@ -47,12 +47,12 @@ def test_views_that_contradict_the_others_are_thrown_out() -> None:
     assert abs(lens.K[0, 0] / CAMERA.K[0, 0] - 1) < 0.005
 
 
-@pytest.mark.parametrize("wrong", [0, 1])
-def test_parallel_views_are_refused(wrong: int) -> None:
+@pytest.mark.parametrize(("wrong", "noise_px"), [(0, 0.1), (0, 0.5), (1, 0.1)])
+def test_parallel_views_are_refused(wrong: int, noise_px: float) -> None:
     rng = np.random.default_rng(1)
     facing = CAMERA.R.T  # the board faces the camera squarely, wherever it is
     places = TARGET_M + rng.uniform(-0.15, 0.15, (15, 3))
-    views = views_at([(facing, place - facing @ middle_m()) for place in places])
+    views = views_at([(facing, place - facing @ middle_m()) for place in places], noise_px)
     for i in range(wrong):  # it seems tilted, until it is thrown out
         x, y = (views[i].corners_px - SIZE_PX[0] / 2).T
         bent = SIZE_PX[0] / 2 + np.column_stack([0.6 * x, y + 30.0 * np.sin(x / 60.0)])

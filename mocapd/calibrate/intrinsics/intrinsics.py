@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.errors import ConfigError
-from mocapd.geometry.reprojection import intrinsics_row, project_rows
+from mocapd.geometry.reprojection import camera_matrix, intrinsics_row, project_rows
 from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.types import Floats
 
@@ -27,6 +27,7 @@ _MODELS = (
 _FOLDS = 4
 # its type stubs do not allow leaving out the first guess
 _CALIBRATE: Any = cv2.calibrateCameraExtended
+_USUAL_FOCAL = 0.95  # in picture widths
 _WORTH = 0.97  # a further coefficient must lower the held-out error to this part of it
 
 
@@ -96,7 +97,7 @@ def solve_intrinsics(
         )
     inliers = list(views)
     first = _solve(inliers, board_m, size_px, _MODELS[1], where)
-    _refuse_parallel(first, views, where, limits)
+    _refuse_parallel(first, views, board_m, size_px, where, limits)
     bad = first.per_view_px > max(limits.view_rms * float(np.median(first.per_view_px)), 0.5)
     inliers = [view for view, out in zip(views, bad, strict=True) if not out]
     if len(inliers) < limits.fewest_views:
@@ -107,7 +108,7 @@ def solve_intrinsics(
         )
     if bad.any():  # an outlier may have been the only view with another tilt
         first = _solve(inliers, board_m, size_px, _MODELS[1], where)
-        _refuse_parallel(first, inliers, where, limits)
+        _refuse_parallel(first, inliers, board_m, size_px, where, limits)
     model, held_out_px = _best_model(inliers, board_m, size_px, where, first)
     solution = _solve(inliers, board_m, size_px, model, where, first)
     deviation = float((solution.deviations[:2] / np.diag(solution.K)[:2]).max())
@@ -194,6 +195,12 @@ def _best_model(
     return best, error_px
 
 
+def usual_camera_matrix(size_px: tuple[int, int]) -> Floats:
+    """K (3,3) of a usual webcam: good enough to distinguish slants of a board."""
+    focal = _USUAL_FOCAL * size_px[0]
+    return camera_matrix(np.array([focal, focal, size_px[0] / 2, size_px[1] / 2]))
+
+
 def board_pose(view: BoardView, board_m: Floats, K: Floats, dist: Floats) -> RigidTransform | None:
     """camera_from_board of one view; None where no pose fits."""
     points_m = board_m[view.ids]
@@ -224,15 +231,32 @@ def _parallel(where: str) -> ConfigError:
 
 
 def _refuse_parallel(
-    solution: _Solution, views: Sequence[BoardView], where: str, limits: IntrinsicsLimits
+    solution: _Solution,
+    views: Sequence[BoardView],
+    board_m: Floats,
+    size_px: tuple[int, int],
+    where: str,
+    limits: IntrinsicsLimits,
 ) -> None:
-    """Parallel planes share their vanishing line and add nothing to one view (Zhang, section 4)."""
-    away = [-1.0 if view.back else 1.0 for view in views]  # of the visible side
-    normals = np.stack([s * R[:, 2] for s, R in zip(away, solution.rotations, strict=True)])
-    cosines = np.clip(normals @ normals.T, -1.0, 1.0)
-    # a percentile, so that of many views one wrong one does not count as a tilt; of few it does, until it is thrown out
-    if np.percentile(np.arccos(cosines), 95) < limits.least_tilt_rad:
-        raise _parallel(where)
+    """Parallel planes share their vanishing line and add nothing to one view (Zhang, section 4).
+
+    Noise makes them yield any focal length, and at a long one it looks like tilts. So they must have tilts at a usual
+    one, too.
+    """
+    K = usual_camera_matrix(size_px)
+    usual = [board_pose(view, board_m, K, np.zeros(5)) for view in views]
+    pairs = list(zip(views, solution.rotations, usual, strict=True))
+    for rotations in (
+        [(view, R) for view, R, _ in pairs],
+        [(view, pose.R) for view, _, pose in pairs if pose is not None],
+    ):
+        # of the visible side
+        normals = np.stack([(-1.0 if view.back else 1.0) * R[:, 2] for view, R in rotations])
+        cosines = np.clip(normals @ normals.T, -1.0, 1.0)
+        # a percentile, so that of many views one wrong one does not count as a tilt; of few it does, until it is thrown
+        # out
+        if np.percentile(np.arccos(cosines), 95) < limits.least_tilt_rad:
+            raise _parallel(where)
 
 
 def _refuse_bad(intrinsics: Intrinsics, where: str, limits: IntrinsicsLimits) -> None:

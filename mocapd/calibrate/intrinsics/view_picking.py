@@ -6,12 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.intrinsics.intrinsics import board_pose
+from mocapd.calibrate.intrinsics.intrinsics import board_pose, usual_camera_matrix
 from mocapd.calibrate.intrinsics.views import coverage
-from mocapd.geometry.reprojection import camera_matrix
 from mocapd.types import Floats
 
-_USUAL_FOCAL = 0.95  # of a webcam, in picture widths: good enough to distinguish slants
 _TURN = 0.5  # a rotation by 1 rad is as new as a shift by half the picture's width
 _SIZE = 0.3  # and so is a board e times as large
 # for picking a picture
@@ -132,9 +130,7 @@ def rough_place(view: BoardView, board_m: Floats, size_px: tuple[int, int]) -> F
     The distance between two measures how alike the views are [picture widths]. Needs no intrinsics: a usual
     focal length is good enough to distinguish slants.
     """
-    focal = _USUAL_FOCAL * size_px[0]
-    K = camera_matrix(np.array([focal, focal, size_px[0] / 2, size_px[1] / 2]))
-    pose = board_pose(view, board_m, K, np.zeros(5))
+    pose = board_pose(view, board_m, usual_camera_matrix(size_px), np.zeros(5))
     if pose is None:
         return None
     xy = view.corners_px / size_px[0]
