@@ -74,6 +74,15 @@ def test_saved_lenses_are_of_one_camera_and_one_mode(tmp_path: Path) -> None:
     assert "size_px = [640, 480]" in text
 
 
+def test_of_identical_webcams_none_gets_the_lens_of_the_other(tmp_path: Path) -> None:
+    twins = [replace(WEBCAM, id=port, source=f"usb:{port}:046d:0825:") for port in ("1-3", "1-4")]
+    lenses = {"1-3": LENS, "1-4": replace(LENS, K=LENS.K * np.array([[1.05], [1.05], [1.0]]))}
+    store_intrinsics(Draft(cameras=tuple(twins), intrinsics=lenses), tmp_path, WHEN)
+    saved = read_intrinsics(tmp_path)
+    assert len(saved) == 2
+    assert [find_saved_intrinsics(twin, saved) for twin in twins] == [None, None]
+
+
 def test_storing_replaces_the_same_and_keeps_the_others(tmp_path: Path) -> None:
     other = replace(WEBCAM, id="cam1", source="usb:1-4:046d:0825:77")
     draft = Draft(cameras=(WEBCAM, other), intrinsics={"cam0": LENS, "cam1": LENS})

@@ -104,15 +104,17 @@ def read_intrinsics(state_dir: Path) -> tuple[SavedIntrinsics, ...]:
 def find_saved_intrinsics(
     camera: DraftCamera, saved: tuple[SavedIntrinsics, ...]
 ) -> SavedIntrinsics | None:
-    """The intrinsics of this camera in this mode, with the same focus where both are recorded."""
-    key = key_of(camera)
-    for record in saved:
-        same = record.camera == key and record.size_px == camera.size_px
-        if same and (
-            None in (record.focus, camera.controls.focus) or record.focus == camera.controls.focus
-        ):
-            return record
-    return None
+    """The intrinsics of this camera in this mode, with the same focus where both are recorded; None, too, where several are
+    of such cameras: of identical webcams, it is unknown which one's they are."""
+    key, focus = key_of(camera), camera.controls.focus
+    same = [
+        record
+        for record in saved
+        if record.camera == key
+        and record.size_px == camera.size_px
+        and (None in (record.focus, focus) or record.focus == focus)
+    ]
+    return same[0] if len(same) == 1 else None
 
 
 def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
