@@ -47,6 +47,18 @@ def test_views_that_contradict_the_others_are_thrown_out() -> None:
     assert abs(lens.K[0, 0] / CAMERA.K[0, 0] - 1) < 0.005
 
 
+def test_errors_may_grow_with_the_size_of_the_picture() -> None:
+    larger = 6.0
+    views = [
+        replace(view, corners_px=larger * (view.corners_px + 0.5) - 0.5)
+        for view in views_at(held_poses(20), noise_px=0.3)
+    ]
+    size_px = (int(larger * SIZE_PX[0]), int(larger * SIZE_PX[1]))
+    lens = solve_intrinsics(views, BOARD_M, size_px, "cam0")
+    assert lens.held_out_px > 2.0
+    assert abs(lens.K[0, 0] / (larger * CAMERA.K[0, 0]) - 1) < 0.02
+
+
 @pytest.mark.parametrize(("wrong", "noise_px"), [(0, 0.1), (0, 0.5), (1, 0.1)])
 def test_parallel_views_are_refused(wrong: int, noise_px: float) -> None:
     rng = np.random.default_rng(1)

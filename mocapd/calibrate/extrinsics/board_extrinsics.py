@@ -32,7 +32,7 @@ from mocapd.calibrate.extrinsics.world_frame import (
     rig_in_world,
     world_on_floor,
 )
-from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, board_pose
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, board_pose, larger_than_hd
 from mocapd.calibration.board_spec import BoardSpec, centre_m, corners_m
 from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import INTRINSICS, camera_matrix, intrinsics_row
@@ -44,7 +44,8 @@ _NINE_IN_TEN = 1.645  # standard deviations, of one direction, which mostly outw
 
 @dataclass(frozen=True, slots=True)
 class BoardExtrinsicsParams:
-    """Parameters of the solution, and requirements for using it."""
+    """Parameters of the solution, and requirements for using it; rms_px: of pictures up to 1280 px wide, in larger ones in
+    proportion."""
 
     bundle: BundleParams = field(default_factory=BundleParams)
     rms_px: float = 2.5
@@ -275,7 +276,8 @@ def _refuse_bad(
 ) -> None:
     """`area`: without the uncertainty of the cameras' positions."""
     far = area is not None and area.median_cm > params.play_area_cm
-    if made.rms_px > params.rms_px or far:
+    larger = max(larger_than_hd(camera.size_px) for camera in made.rig.cameras)
+    if made.rms_px > larger * params.rms_px or far:
         raise contradiction(made.rms_px, area, spec.two_sided)
     for name, fit in made.cameras.items():
         if fit.focal_deviation > params.focal_deviation:

@@ -33,7 +33,7 @@ _WORTH = 0.97  # a further coefficient must lower the held-out error to this par
 
 @dataclass(frozen=True, slots=True)
 class IntrinsicsLimits:
-    """Requirements for using intrinsics."""
+    """Requirements for using intrinsics; errors of pictures up to 1280 px wide, in larger ones in proportion."""
 
     fewest_views: int = 6
     rms_px: float = 1.5
@@ -195,6 +195,11 @@ def _best_model(
     return best, error_px
 
 
+def larger_than_hd(size_px: tuple[int, int]) -> float:
+    """How many times wider than 1280 px, 1 for less: blur and motion of the board grow in px with the picture."""
+    return max(1.0, size_px[0] / 1280)
+
+
 def usual_camera_matrix(size_px: tuple[int, int]) -> Floats:
     """K (3,3) of a usual webcam: good enough to distinguish slants of a board."""
     focal = _USUAL_FOCAL * size_px[0]
@@ -260,7 +265,9 @@ def _refuse_parallel(
 
 
 def _refuse_bad(intrinsics: Intrinsics, where: str, limits: IntrinsicsLimits) -> None:
-    if intrinsics.rms_px > limits.rms_px or intrinsics.held_out_px > limits.held_out_px:
+    larger = larger_than_hd(intrinsics.size_px)
+    rms_px, held_out_px = intrinsics.rms_px / larger, intrinsics.held_out_px / larger
+    if rms_px > limits.rms_px or held_out_px > limits.held_out_px:
         raise ConfigError(
             f"the board fits badly: {intrinsics.rms_px:.2f} px, {intrinsics.held_out_px:.2f} px held out",
             where,
