@@ -31,7 +31,8 @@ def content_of(function: PythonFunction) -> str:
     """A hash of everything that the compiled code of a kernel follows from; comments, lines and its file's place are
     not of it. numba itself looks at the kernel's own file alone, and would run the old code of a changed callee.
 
-    The named tuples that it takes are of it with their modules: numba cannot read code compiled for one that has moved.
+    The kernels that it calls and the named tuples that it takes are of it with their modules: numba cannot read code compiled
+    for one that has moved.
     """
     digest = hashlib.sha256(repr(OPTIONS).encode())
     for line in _decorator(function.__code__):
@@ -51,7 +52,9 @@ def content_of(function: PythonFunction) -> str:
 def _content(value: Any, function: PythonFunction) -> str:
     if isinstance(value, Dispatcher):
         called = value.py_func
-        return "" if called is function else content_of(called)  # its own code is there already
+        if called is function:
+            return ""  # its own code is there already
+        return f"{called.__module__} {content_of(called)}"
     if isinstance(value, ModuleType):
         return value.__name__
     if isinstance(value, np.ndarray):

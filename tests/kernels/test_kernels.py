@@ -34,7 +34,7 @@ def scaled(x):
 """
 CALLER = """\
 from numba import njit
-from mocapd.callee_kernels import scaled
+from mocapd.{callee}_kernels import scaled
 @njit(cache=True{option})
 def twice(x):
     return 2.0 * scaled(x)
@@ -69,12 +69,20 @@ class Kernels:
         self.folder.mkdir()
 
     def said(
-        self, scale: int = 1, words: str = "", term: str = "x", option: str = "", above: str = ""
+        self,
+        scale: int = 1,
+        words: str = "",
+        term: str = "x",
+        option: str = "",
+        above: str = "",
+        callee: str = "callee",
     ) -> str:
-        (self.folder / "callee_kernels.py").write_text(
+        for old in self.folder.glob("*_kernels.py"):
+            old.unlink()
+        (self.folder / f"{callee}_kernels.py").write_text(
             above + CALLEE.format(scale=scale, words=words, term=term)
         )
-        (self.folder / "caller_kernels.py").write_text(CALLER.format(option=option))
+        (self.folder / "caller_kernels.py").write_text(CALLER.format(option=option, callee=callee))
         command = [sys.executable, "-c", PROGRAM, str(self.folder), str(self.cache)]
         return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
 
@@ -89,6 +97,7 @@ def test_code_is_kept_until_a_kernel_or_one_that_it_calls_changes(tmp_path: Path
     assert kernels.said(term="(x + 1.0)") == "8.0 scaled twice"
     assert kernels.said(option=", fastmath=True") == "6.0 twice"
     assert kernels.said() == "6.0"  # an earlier version's is there still
+    assert kernels.said(callee="moved") == "6.0 scaled twice"  # the caller's code names its module
 
 
 def test_the_trackers_kernels_use_nothing_of_numpy_that_takes_long_to_compile_and_to_load() -> None:
