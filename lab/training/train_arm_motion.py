@@ -1,4 +1,4 @@
-"""Learn from clips of real motion where arms are and how they move when nobody looks, for `mocapd.fit.priors.arm_motion`.
+"""Learn from clips of real motion where arms are and how they move when nobody looks, for `mocapd.fit.priors.pose_prior`.
 
 python -m lab.training.train_arm_motion CLIPS calib/arm_motion.json
 

@@ -1,22 +1,64 @@
 """One Gauss-Newton step: the terms' normal equations, held by the priors of motion, rest, uprightness, joint limits and
-proportions, and solved. One call, as a frame has dozens of steps; each prior is a kernel of its own in `priors/`."""
+proportions, and solved. One call, as a frame has dozens of steps; each prior is a kernel of its own."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.joint_limit_kernels import JointLimits
+from mocapd.body.joint_limit_kernels import JointLimits, limit_residuals
 from mocapd.body.posing_kernels import difference
 from mocapd.fit.positive_inverse_kernels import solve_positive
-from mocapd.fit.priors.held_pose_kernels import pull_back
-from mocapd.fit.priors.joint_limit_term_kernels import keep_in_limits
-from mocapd.fit.priors.tilt_kernels import set_upright
 from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 
 FREE_POSE = 1e-3  # information of a free pose, for what nothing observes
+
+
+@kernel
+def keep_in_limits(
+    local_xyzw: Array, limits: JointLimits, information: float, H: Array, b: Array
+) -> None:
+    """Add information [1/rad^2] of by how much each rotation group of a pose (J,4) is beyond its limits."""
+    groups = limits[1].shape[0]
+    excess = np.zeros((groups, 3))
+    slope = np.zeros((groups, 3, 3))
+    limit_residuals(local_xyzw, limits, excess, slope)
+    for group in range(groups):
+        first = 3 + 3 * group
+        for i in range(3):
+            if excess[group, i] == 0.0:
+                continue
+            for p in range(3):
+                pull = information * slope[group, i, p]
+                b[first + p] -= pull * excess[group, i]
+                for q in range(3):
+                    H[first + p, first + q] += pull * slope[group, i, q]
+
+
+@kernel
+def pull_back(information: Array, away: Array, b: Array) -> None:
+    """Add information (n,n) times away (n,), from the pose to the other one, to the first of b (P,); n is a multiple of
+    three, and three sums that are made beside each other take a third of the time of one."""
+    for p in range(0, away.shape[0], 3):
+        x, y, z = b[p], b[p + 1], b[p + 2]
+        for q in range(away.shape[0]):
+            x += information[p, q] * away[q]
+            y += information[p + 1, q] * away[q]
+            z += information[p + 2, q] * away[q]
+        b[p], b[p + 1], b[p + 2] = x, y, z
+
+
+@kernel
+def set_upright(hips_xyzw: Array, information: float, H: Array, b: Array) -> None:
+    """Add information [1/rad^2] of the rotation vector, in the world, by which the hips lean: of Y over to where they point
+    up."""
+    x, y, z, w = hips_xyzw[0], hips_xyzw[1], hips_xyzw[2], hips_xyzw[3]
+    H[3, 3] += information
+    H[5, 5] += information
+    b[3] -= information * 2.0 * (y * z + w * x)
+    b[5] += information * 2.0 * (x * y - w * z)
 
 
 class PosePriors(NamedTuple):
@@ -39,8 +81,8 @@ def _shape_step(
     shape_information: Array,
     shape_room: Array,
 ) -> Array:
-    """The step of the factors where the pose is free: eliminated from A (P,P), g (P,), as in `free_shape_information`; within
-    shape_room (2,n_shape)."""
+    """The step of the factors where the pose is free: eliminated from A (P,P), g (P,), as in
+    `Fitter.shape_information`; within shape_room (2,n_shape)."""
     free, factors = A.copy(), g.copy()
     for p in range(n_pose):
         free[p, p] += FREE_POSE

@@ -20,12 +20,11 @@ from mocapd.fit.fit_result import Fit
 from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.motion_state import MotionState, apply_step
 from mocapd.fit.priors.pose_prior import small_baseline_prior, wide_baseline_prior
-from mocapd.fit.solve_kernels import gauss_newton_step
+from mocapd.fit.solve_kernels import FREE_POSE, gauss_newton_step
 from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.fit.terms.collision_term import CollisionTerm
 from mocapd.fit.terms.depth_agreement import compared_depths
 from mocapd.fit.terms.id_map_term import IdMapTerm
-from mocapd.fit.terms.shape_term import free_shape_information
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View, coarse
 from mocapd.types import Camera, Floats
@@ -148,8 +147,12 @@ class Fitter:
         return np.asarray(ray / np.linalg.norm(ray))
 
     def shape_information(self, H: Floats) -> Floats:
-        """What the evidence says of the shape factors (n_shape,n_shape) when the pose is free."""
-        return free_shape_information(H, self._wide_baseline_prior[1])
+        """What the evidence H (P,P) says of the shape factors (n_shape,n_shape) when the pose is free within the usual range
+        of poses: the Schur complement of H, with the pose first."""
+        n = self.model.n_pose
+        of_pose = H[:n, :n] + self._wide_baseline_prior[1] + FREE_POSE * np.eye(n)
+        of_both = H[:n, n:]
+        return np.asarray(H[n:, n:] - of_both.T @ np.linalg.solve(of_pose, of_both))
 
     def _pose_joints(self, state: MotionState, body: Shaped) -> PosedJoints:
         """At the frame set's own instant."""

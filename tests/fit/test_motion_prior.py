@@ -8,8 +8,8 @@ import pytest
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
 from mocapd.fit.fit_params import MotionPriorParams
-from mocapd.fit.priors.arm_motion import load_arm_motion
 from mocapd.fit.priors.motion_prior import predicted_information
+from mocapd.fit.priors.pose_prior import load_arm_motion
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 from tests.fit.synthetic import MODEL, fitter, standing, views_of

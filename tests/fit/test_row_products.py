@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.fit.terms.row_products_kernels import add_products
+from mocapd.fit.terms.triangle_rows_kernels import add_products
 
 
 @pytest.mark.parametrize("used", [0, 1, 7, 20])

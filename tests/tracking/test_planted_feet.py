@@ -10,7 +10,7 @@ from mocapd.clock import nanoseconds
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import initial_information
 from mocapd.fit.solver import Fitter
-from mocapd.fit.terms.planted_term import PlantedParams, PlantedTerm
+from mocapd.fit.terms.floor_term import PlantedParams, PlantedTerm
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.tracking.planted_feet import PlantedFeet, PlantedFeetParams

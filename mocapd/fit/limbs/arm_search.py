@@ -1,6 +1,7 @@
 """Hypothesis search for an arm that disagrees with the pictures: sample, score and refine other poses."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
@@ -10,8 +11,7 @@ from mocapd.body.pose_space import SIDES, PoseSpace
 from mocapd.fit.fit_params import LimbSearchParams
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.arm_samples import Arm, arm_of
-from mocapd.fit.limbs.arms_exchanged import with_arms_exchanged
-from mocapd.fit.limbs.hand_target_poses import hand_target_poses
+from mocapd.fit.limbs.hand_target_poses import bones_to_rotations, hand_target_poses, limb_bones_to
 from mocapd.fit.limbs.limb_candidates import best_poses, candidates, part, spread, turned_rad2
 from mocapd.fit.limbs.limb_fits import cheapest_fit, with_limb
 from mocapd.fit.limbs.limb_scores import has_depths, score_arms_and_hands, score_hand_places
@@ -167,3 +167,21 @@ def arm_library(space: PoseSpace, size: int, side: str) -> Floats:
         angles = low + (high - low) * u[:, span]
         out[:, place] = from_swing_twist(angles, int(limits.axis[group]))
     return out
+
+
+def with_arms_exchanged(fitter: Fitter, state: MotionState, arms: Mapping[str, Arm]) -> MotionState:
+    """Each hand where the other one is, or as near as it reaches, with the elbow near the other's: in a side view one arm may
+    slip onto the other. arms: both, by side."""
+    joints_m, globals_ = fitter.joints(state)
+    exchanged = replace(state, velocity=np.zeros_like(state.velocity))
+    for side, its in (SIDES, SIDES[::-1]):
+        arm, other = arms[side], arms[its]
+        shoulder, chain = joints_m[arm.chain[1]], arm.chain[:3]
+        elbow, hand = joints_m[other.chain[2:4]]
+        upper, lower = (bone[:, 0] for bone in limb_bones_to(hand[None], joints_m, globals_, arm))
+        nearest = [np.linalg.norm(shoulder + upper - elbow, axis=1).argmin()]
+        poses = bones_to_rotations(
+            upper[nearest], lower[nearest], joints_m, globals_, arm, state.local_xyzw[chain]
+        )
+        exchanged = with_limb(exchanged, arm, poses[0])
+    return exchanged

@@ -12,7 +12,7 @@ import numpy as np
 
 from mocapd.body.skeleton import PARENTS
 from mocapd.fit.limbs.arm_samples import Arm
-from mocapd.fit.limbs.mirroring_kernels import mirrored_in_depth
+from mocapd.fit.limbs.limb_search_kernels import mirrored_in_depth
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View

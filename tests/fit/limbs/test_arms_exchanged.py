@@ -6,7 +6,7 @@ import pytest
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
 from mocapd.fit.limbs.arm_samples import arm_of
-from mocapd.fit.limbs.arms_exchanged import with_arms_exchanged
+from mocapd.fit.limbs.arm_search import with_arms_exchanged
 from mocapd.fit.limbs.hand_target_poses import hand_poses
 from mocapd.fit.limbs.limb_fits import with_limb
 from mocapd.fit.motion_state import MotionState

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mocapd.fit.limbs.mirroring_kernels import mirrored_in_depth, shortest_turn
+from mocapd.fit.limbs.limb_search_kernels import mirrored_in_depth, shortest_turn
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 

@@ -4,8 +4,7 @@ from dataclasses import dataclass, field
 
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams, MotionPriorParams
 from mocapd.fit.stereo_depth import StereoDepthParams
-from mocapd.fit.terms.floor_term import FloorParams
-from mocapd.fit.terms.planted_term import PlantedParams
+from mocapd.fit.terms.floor_term import FloorParams, PlantedParams
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
 from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams

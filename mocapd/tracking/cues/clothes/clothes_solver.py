@@ -12,10 +12,10 @@ from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState, initial_information
-from mocapd.fit.priors.motion_prior import predicted_information
+from mocapd.fit.priors.motion_prior import predicted_information, prediction_prior
 from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.floor_term import PlantedTerm
 from mocapd.fit.terms.joint_term import JointTerm
-from mocapd.fit.terms.planted_term import PlantedTerm
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.fit.work_size import image_scales
@@ -35,7 +35,6 @@ from mocapd.tracking.hypotheses.base import WHOLE, HypothesisContext, PoseEviden
 from mocapd.tracking.hypotheses.hypothesis_tests import HypothesisTests
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.planted_feet import PlantedFeet
-from mocapd.tracking.prediction_prior import prediction_prior
 from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import (
     NEW_BODY_PRIOR_S,

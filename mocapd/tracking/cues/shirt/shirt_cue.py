@@ -15,6 +15,7 @@ from mocapd.fit.fit_result import Fit
 from mocapd.fit.idmap_renderer import Roi
 from mocapd.fit.limbs.arm_search import ArmSearch, is_uncertain
 from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.priors.motion_prior import prediction_prior
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.term import Term
@@ -30,7 +31,6 @@ from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.tracking.cues.stereo.stereo_distances import stereo_distance_terms
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.pictures import Pictures
-from mocapd.tracking.prediction_prior import prediction_prior
 from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import (
     NEW_BODY_PRIOR_S,
