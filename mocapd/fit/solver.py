@@ -21,9 +21,9 @@ from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.motion_state import MotionState, apply_step
 from mocapd.fit.priors.pose_prior import small_baseline_prior, wide_baseline_prior
 from mocapd.fit.solve_kernels import FREE_POSE, gauss_newton_step
+from mocapd.fit.stereo_depth import compared_depths
 from mocapd.fit.surface_labels import SurfaceLabels
 from mocapd.fit.terms.collision_term import CollisionTerm
-from mocapd.fit.terms.depth_agreement import compared_depths
 from mocapd.fit.terms.id_map_term import IdMapTerm
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View, coarse

@@ -17,7 +17,7 @@ from mocapd.pipeline.other_programs import OtherPrograms
 from mocapd.pipeline.slowness import SlownessWatch
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.tracking.base import EffortTracker, LearningTracker, Track, Tracker
-from mocapd.tracking.view_disagreement import lower_confidence
+from mocapd.tracking.tracking_state import lower_confidence
 from mocapd.types import BodyState, FrameSet, Tracking
 
 OnDeath = Callable[[BaseException], None]

@@ -9,8 +9,8 @@ from mocapd.pipeline.collector import CollectorCounts
 from mocapd.pipeline.latency_histogram import LatencyCounts, LatencyHistogram
 from mocapd.pipeline.rolling import Percentiles, RollingPercentiles, RollingRate, percentiles
 from mocapd.pipeline.slowness import Slowness
+from mocapd.tracking.base import LostReason
 from mocapd.tracking.effort import Effort
-from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, FrameSet, Tracking
 
 

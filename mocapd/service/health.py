@@ -13,8 +13,8 @@ from mocapd.outputs.messages import CameraStatus, Health, OutputHealth
 from mocapd.pipeline.metrics import CameraMetrics, Metrics
 from mocapd.pipeline.slowness import Slowness
 from mocapd.session.camera_inputs import CameraInput
+from mocapd.tracking.base import LostReason
 from mocapd.tracking.effort import Effort
-from mocapd.tracking.lost_reason import LostReason
 
 # by effort: the trouble and its fix
 EFFORT_TROUBLE: Mapping[str, tuple[str, str]] = MappingProxyType(

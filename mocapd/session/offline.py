@@ -12,9 +12,8 @@ from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.clock import seconds
 from mocapd.errors import ConfigError
 from mocapd.output_file import FileKind, OutputFile
-from mocapd.tracking.base import RoomLearner, Tracker
-from mocapd.tracking.lost_reason import LostReason
-from mocapd.tracking.view_disagreement import lower_confidence
+from mocapd.tracking.base import LostReason, RoomLearner, Tracker
+from mocapd.tracking.tracking_state import lower_confidence
 from mocapd.types import Floats, FrameSet
 
 SCHEMA = "mocapd.Track.v1"

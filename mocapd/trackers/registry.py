@@ -13,13 +13,29 @@ from mocapd.errors import ConfigError
 from mocapd.geometry.camera_model import sees_from_one_place
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.tracking.base import Tracker, frozen_clock
-from mocapd.tracking.profiles import PROFILES
 from mocapd.tracking.tracking_state import TrackingStateParams
 
 if TYPE_CHECKING:
     from mocapd.shirt.pose_database.database import PoseDatabase
 
 MapChunks = Callable[[Callable[[slice], None], Iterable[slice]], Iterable[None]]
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """The cues of a body tracker."""
+
+    shirt: bool
+    clothes: bool
+
+
+PROFILES: Mapping[str, Profile] = MappingProxyType(
+    {
+        "auto": Profile(shirt=True, clothes=True),
+        "shirt": Profile(shirt=True, clothes=False),
+        "markerless": Profile(shirt=False, clothes=True),
+    }
+)
 
 
 def _quiet(_: object) -> None:

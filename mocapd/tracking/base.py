@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -9,10 +10,27 @@ import numpy as np
 from mocapd.body.shape import BodyShape
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.tracking.effort import Effort
-from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, Bytes, FrameSet, Tracking
 
 Probe = Callable[[str], None]  # called with the name of a stage when it ends
+
+
+class LostReason(StrEnum):
+    """Each reason comes with a description and a remedy for the user."""
+
+    UNRECOGNISED = (
+        "unrecognised"  # a person-sized region moved for seconds and failed the person checks
+    )
+
+    @property
+    def what(self) -> str:
+        """Description for the user."""
+        return "somebody moves here who is not taken for a person"
+
+    @property
+    def fix(self) -> str:
+        """Remedy for the user."""
+        return "stand upright once, facing the cameras, the whole body in view of all of them"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

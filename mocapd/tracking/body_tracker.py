@@ -19,10 +19,13 @@ from mocapd.tracking.cues.clothes.clothes_solver import ClothesEstimate, Clothes
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtEstimate
 from mocapd.tracking.cues.shirt.shirt_locator import ShirtLocator
 from mocapd.tracking.effort import WORK, Effort
-from mocapd.tracking.initialisers.base import Initialiser, InitialPose
-from mocapd.tracking.initialisers.foreground_person import ForegroundPerson
-from mocapd.tracking.initialisers.handed_over_body import HandedOverBody
-from mocapd.tracking.initialisers.shirt_pose import ShirtPose
+from mocapd.tracking.initialisers.base import (
+    ForegroundPerson,
+    HandedOverBody,
+    Initialiser,
+    InitialPose,
+    ShirtPose,
+)
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.pose_filter import PoseFilter
 from mocapd.tracking.published_body import CueEstimates, publish_body

@@ -16,15 +16,15 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.tracking.base import Track
-from mocapd.tracking.cues.clothes.clothes_confidence import (
-    joint_confidence as confidence_by_clothes,
-)
-from mocapd.tracking.cues.clothes.clothes_confidence import keypoint_agreement
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_solver import ClothesEstimate
-from mocapd.tracking.cues.shirt.shirt_confidence import joint_confidence as confidence_by_shirt
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtEstimate
 from mocapd.tracking.hypotheses.base import WHOLE
+from mocapd.tracking.joint_confidence import (
+    clothes_confidence,
+    keypoint_agreement,
+    shirt_confidence,
+)
 from mocapd.tracking.pose_filter import PoseFilter
 from mocapd.tracking.track_state import TrackState, upper_body_state
 from mocapd.tracking.tracking_state import confidence_fade, grow_uncertainty
@@ -63,13 +63,13 @@ def publish_body(
         unfiltered, uncertainty_m = _pose_with_uncertainty(clothes.fitter, motion, state.whole)
         away_of_whole_s = seconds(t_ns - state.whole_ns)
         n = len(state.cameras)
-        confidence = confidence_by_clothes(state.whole, n, uncertainty_m, away_of_whole_s)
+        confidence = clothes_confidence(state.whole, n, uncertainty_m, away_of_whole_s)
         agreement = keypoint_agreement(state.off_keypoints_m)
     if state.by_shirt and state.trunk is not None and shirt is not None:
         upper = upper_body_state(motion, shirt.model)
         by_trunk, of_trunk_m = _pose_with_uncertainty(shirt.fitter, upper, state.trunk)
         unfiltered = by_trunk if unfiltered is None else unfiltered
-        by_it = confidence_by_shirt(state.trunk, len(state.cameras), of_trunk_m, away_s)
+        by_it = shirt_confidence(state.trunk, len(state.cameras), of_trunk_m, away_s)
         lower = _LOWER_JOINTS if state.whole is not None else np.empty(0, np.int64)
         by_it[lower], of_trunk_m[lower] = confidence[lower], uncertainty_m[lower]
         away_of_joints_s[lower] = seconds(t_ns - state.whole_ns)

@@ -1,13 +1,13 @@
-"""`live`, `coasting` or `lost`, from evidence and time alone."""
+"""`live`, `coasting` or `lost`, from evidence and time alone; and what lowers the confidence of a body."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mocapd.clock import nanoseconds
 from mocapd.errors import ConfigError
-from mocapd.types import Floats, Tracking
+from mocapd.types import BodyState, Floats, Tracking
 
 # How fast joints leave a pose published without evidence, along an axis: of 25 clips of everyday motion and sport
 # the hips 0.3, elbows 0.4, hands 0.6
@@ -75,3 +75,18 @@ class TrackingState:
         if evidence:
             self._evidence_ns = t_ns
         return self.now
+
+
+_HALF_M = 0.05  # a contradiction that halves confidence
+
+
+def lower_confidence(body: BodyState, off_m: float) -> BodyState:
+    """The body with joints that may be off by `off_m` [m] more than its tracker estimates, while the cameras' views
+    contradict each other persistently.
+
+    A fit to contradicting views lies between them, and each view seems to confirm its joints.
+    """
+    if off_m <= 0.0 or body.pose is None:
+        return body
+    confidence = body.confidence / (1.0 + (off_m / _HALF_M) ** 2)
+    return replace(body, confidence=confidence, uncertainty_m=np.hypot(body.uncertainty_m, off_m))

@@ -17,9 +17,8 @@ from mocapd.pipeline.idle_moments import IdleMoments
 from mocapd.pipeline.loop import PipelineLoop
 from mocapd.pipeline.smoothing import Smoother
 from mocapd.trackers.canned.tracker import CannedTracker
-from mocapd.tracking.base import Probe, Track, Tracker, lost_body, no_probe
+from mocapd.tracking.base import LostReason, Probe, Track, Tracker, lost_body, no_probe
 from mocapd.tracking.effort import Effort
-from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import BodyState, Frame, FrameSet, Tracking
 from tests.pipeline.free_running import PIXELS
 

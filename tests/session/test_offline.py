@@ -11,8 +11,7 @@ from mocapd.body.skeleton import INDEX
 from mocapd.errors import ConfigError
 from mocapd.session.offline import RecordedTrack, learn_room, track_all, why_missing, write_track
 from mocapd.trackers.canned.tracker import UNCERTAINTY_M, CannedTracker
-from mocapd.tracking.base import Track, lost_body
-from mocapd.tracking.lost_reason import LostReason
+from mocapd.tracking.base import LostReason, Track, lost_body
 from mocapd.types import Frame, FrameSet
 from tests.pipeline.free_running import PIXELS
 

@@ -11,10 +11,9 @@ from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.pose_database.cache_name import CACHE_NAME
 from mocapd.trackers import registry
-from mocapd.trackers.registry import Resources, build, has_caches, shirt_tracker
+from mocapd.trackers.registry import PROFILES, Resources, build, has_caches, shirt_tracker
 from mocapd.tracking.build import ProfileParams
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.profiles import PROFILES
 from mocapd.types import Rig
 
 NO_SHIRT = Wearer(1.7, has_shirt=False)

@@ -20,13 +20,12 @@ from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.shirt.garment import shirt_labels
-from mocapd.tracking.base import Track
+from mocapd.tracking.base import LostReason, Track
 from mocapd.tracking.body_tracker import BodyTracker
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_solver import ClothesEstimate, ClothesObservation
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtEstimate
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
-from mocapd.tracking.lost_reason import LostReason
 from mocapd.tracking.track_state import BodyShapeEstimate, TrackState, upper_body_state
 from mocapd.tracking.trunk_and_legs import join_bodies
 from mocapd.types import BodyState, Floats, Frame, FrameSet, Pose, Rig

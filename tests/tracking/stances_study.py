@@ -22,7 +22,7 @@ from mocapd.evaluate.truth import load_truth
 from mocapd.session.offline import track_all
 from mocapd.session.tracker_setup import ready_tracker
 from mocapd.trackers.registry import Resources
-from mocapd.tracking.lost_reason import LostReason
+from mocapd.tracking.base import LostReason
 from tests.tracking.stances.moved_things import THINGS, MovedThing, filmed
 from tests.tracking.stances.sessions import SESSIONS, record
 

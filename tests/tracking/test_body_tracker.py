@@ -8,9 +8,9 @@ import pytest
 
 from mocapd.body.skeleton import INDEX
 from mocapd.clock import nanoseconds
+from mocapd.tracking.base import LostReason
 from mocapd.tracking.body_tracker import BodyTrackerParams
 from mocapd.tracking.cue_trust import CLOTHES_TRUST, SHIRT_TRUST
-from mocapd.tracking.lost_reason import LostReason
 from mocapd.tracking.pose_filter import PoseFilterParams
 from mocapd.tracking.trunk_and_legs import LOWER_BONES
 from mocapd.types import BodyState, FrameSet, Tracking

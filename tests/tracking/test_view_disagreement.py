@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mocapd.tracking.view_disagreement import lower_confidence
+from mocapd.tracking.tracking_state import lower_confidence
 from mocapd.types import BodyState, Pose, Tracking
 
 

@@ -21,8 +21,7 @@ from mocapd.fit.limbs.limb_fits import with_limb
 from mocapd.fit.limbs.limb_scores import score_arms_and_hands
 from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.motion_state import MotionState
-from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
-from mocapd.tracking.hypotheses.best_start import best_start
+from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit, best_start
 from mocapd.types import Floats
 
 

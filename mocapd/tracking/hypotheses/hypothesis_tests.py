@@ -1,12 +1,86 @@
 """Runs the pose hypotheses that the solver cannot reach, one after another."""
 
+from dataclasses import replace
+
+import numpy as np
+
+from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.hypotheses.base import HypothesisContext, PoseHypothesis, ScoredFit
+from mocapd.tracking.hypotheses.base import HypothesisContext, PoseHypothesis, ScoredFit, best_start
 from mocapd.tracking.hypotheses.hull_poses import HullEnds
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
-from mocapd.tracking.hypotheses.limb_poses import ArmPoses, LegPoses
-from mocapd.tracking.hypotheses.moved_limbs import MovedLimbs
+
+_ENDS = [limb.end for limb in LIMBS.values()]
+_LEAST_VIEWS = 3  # fewer did not gain by it (docs/decisions/one-body.md)
+_MOVED_M = 0.06  # of a limb's end beside its prediction, relative to the hips
+_ITERATIONS = 4
+_GAIN = 5.0  # cost decrease needed to accept it [disagreeing pixels]
+
+
+class ArmPoses:
+    """Other arms about one that the pictures hardly confirm, and over its whole range, where no trunk leads that knows them;
+    see PoseHypothesis."""
+
+    def reset(self) -> None:
+        """See PoseHypothesis."""
+
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
+        """See PoseHypothesis."""
+        at.solvers.arms.rehearse(now.fit.state, now.views)
+
+    def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
+        """See PoseHypothesis."""
+        if at.trunk_prior is not None:
+            return now
+        fit, sides = at.solvers.arms.improve(
+            now.fit, now.views, at.dt_s, at.ticks.frame_index, now.terms
+        )
+        changed = (*now.changed, *(f"{side}_arm" for side in sides))
+        return replace(now, fit=fit, changed=changed)
+
+
+class LegPoses:
+    """Other legs; see PoseHypothesis."""
+
+    def reset(self) -> None:
+        """See PoseHypothesis."""
+
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
+        """See PoseHypothesis."""
+        at.solvers.legs.rehearse(now.fit.state, now.views)
+
+    def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
+        """See PoseHypothesis."""
+        fit, sides = at.solvers.legs.improve(
+            now.fit, now.views, at.dt_s, at.ticks.frame_index, now.terms, at.trunk_prior
+        )
+        return replace(now, fit=fit, changed=(*now.changed, *(f"{side}_leg" for side in sides)))
+
+
+class MovedLimbs:
+    """A limb that moved far from its prediction: the pictures are classified again about the fit, and fitted again.
+
+    Regions of one colour are told apart by the pose about which they are classified. Where the end of a limb was predicted a
+    hand's width beside where it is, its own pixels pass for its neighbour's: the fit goes part of the way, and falls behind.
+    """
+
+    def reset(self) -> None:
+        """See PoseHypothesis."""
+
+    def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
+        """See PoseHypothesis."""
+
+    def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
+        """See PoseHypothesis."""
+        if at.trunk_prior is not None or at.predicted is None or len(now.views) < _LEAST_VIEWS:
+            return now
+        joints = at.solvers.fitter.joints
+        here_m, predicted_m = joints(now.fit.state)[0], joints(at.predicted)[0]
+        moved_m = (here_m[_ENDS] - here_m[0]) - (predicted_m[_ENDS] - predicted_m[0])
+        if np.linalg.norm(moved_m, axis=1).max() <= _MOVED_M:
+            return now
+        return best_start(now, at, [(now.fit.state, now.changed)], _ITERATIONS, _GAIN, 0.0)
 
 
 class HypothesisTests:

@@ -1,17 +1,122 @@
-"""The keypoint hypothesis: where keypoints disagree with the fit, further fits start at their pose.
+"""The keypoint hypothesis: where keypoints disagree with the fit, for limbs or a facing direction, further fits start at
+their pose.
 
 Regions of the same colour are separated only by the rendered pose. So the pictures are classified again about each start
 pose: with the classification of the predicted pose, an arm before a trunk of its colour could not move away from it.
 """
 
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+
+from mocapd.body.skeleton import INDEX, OTHER_SIDE
+from mocapd.fit.fit_result import Fit
+from mocapd.fit.limbs.two_bone_ik import LIMBS
+from mocapd.fit.motion_state import MotionState, turned_about_vertical
+from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
-from mocapd.tracking.hypotheses.base import HypothesisContext, ScoredFit
-from mocapd.tracking.hypotheses.best_start import best_start
-from mocapd.tracking.hypotheses.keypoint_starts import (
-    KeypointPoseParams,
-    fit_to_keypoints,
-    keypoint_starts,
-)
+from mocapd.fit.terms.term import Term
+from mocapd.tracking.cues.keypoints.limbs_at_keypoints import with_limbs_at_keypoints
+from mocapd.tracking.hypotheses.base import WHOLE, HypothesisContext, ScoredFit, best_start
+from mocapd.types import Floats
+
+_LEGS = [j for name, one in LIMBS.items() if name.endswith("leg") for j in (one.lower, one.end)]
+
+
+@dataclass(frozen=True, slots=True)
+class KeypointPoseParams:
+    """When a limb or the whole body is refitted at its keypoints."""
+
+    limb_cost: float = 25.0  # of its joints, more than there [disagreeing pixels]
+    whole_cost: float = 150.0
+    turned_rad: float = 0.6  # yaw error above which the body is turned first
+    reversed_rad: float = 2.4  # the same, above which the body faces the other way
+    reversed_looks: int = 3  # in a row that say so, where views cross: colours learned from a reversed body confirm it
+    iterations: int = 6  # of the fit to the keypoints alone
+    fit_iterations: int = 4  # of a fit to the pictures from there
+    loose_s: float = 0.3  # the prior is as weak as a prediction over this time
+    gain: float = 5.0  # cost decrease needed to accept it [disagreeing pixels]
+    farther: float = (
+        5.0  # further decrease needed for limbs that are farther away [disagreeing pixels/rad^2]
+    )
+
+
+def keypoint_starts(
+    fitter: Fitter,
+    fit: Fit,
+    keypoints: JointTerm,
+    held: Sequence[Term],
+    params: KeypointPoseParams,
+    legs_alone: bool = False,
+    each_alone: bool = False,
+) -> list[tuple[MotionState, tuple[str, ...]]]:
+    """Start poses with the parts that change: with the limbs that are far from their keypoints, and with the whole body.
+
+    held: further terms of the keypoint fit; legs_alone: the rest of the body is fixed; each_alone: also with each of these
+    limbs alone, as another may have been seen where it is not.
+    """
+    p, joints_m = params, fitter.joints(fit.state)[0]
+    costs = keypoints.costs(joints_m)
+    far = {
+        name: costs[[one.lower, one.end]].sum()
+        for name, one in LIMBS.items()
+        if not legs_alone or name.endswith("leg")
+    }
+    whole = not legs_alone and costs.sum() > p.whole_cost
+    if max(far.values()) <= p.limb_cost and not whole:
+        return []
+    # a trunk from the shirt has the right sides; so have keypoints that agree with it about the facing direction
+    sides_agree = legs_alone and abs(keypoints.turn_rad(joints_m)) < p.turned_rad
+    if not sides_agree and legs_exchanged(keypoints, joints_m, costs, p):
+        far = {name: cost for name, cost in far.items() if name.endswith("arm")}
+    lost = [name for name, cost in far.items() if cost > p.limb_cost or whole]
+    if not lost:
+        return []
+    there = fit_to_keypoints(fitter, fit.state, keypoints, held, p, lost)
+    costs_there = keypoints.costs(fitter.joints(there)[0])
+    limbs = tuple(
+        name
+        for name, cost in far.items()
+        if cost - costs_there[[LIMBS[name].lower, LIMBS[name].end]].sum() > p.limb_cost
+    )
+    starts: list[tuple[MotionState, tuple[str, ...]]] = []
+    choices = [limbs] if limbs else []
+    if each_alone and len(limbs) > 1:
+        choices += [(name,) for name in limbs]
+    for chosen in choices:
+        local = fit.state.local_xyzw.copy()
+        for name in chosen:
+            bones = [INDEX[bone] for bone in fitter.model.space.parts[name].groups]
+            local[bones] = there.local_xyzw[bones]
+        starts.append((replace(fit.state, local_xyzw=local), chosen))
+    if whole and costs.sum() - costs_there.sum() > p.whole_cost:
+        starts.append((there, (WHOLE,)))
+    return starts
+
+
+def legs_exchanged(
+    keypoints: JointTerm, joints_m: Floats, costs: Floats, params: KeypointPoseParams
+) -> bool:
+    """True if the detected legs match these legs with left and right exchanged."""
+    other_m = joints_m.copy()
+    other_m[_LEGS] = joints_m[OTHER_SIDE[_LEGS]]
+    return bool(costs[_LEGS].sum() - keypoints.costs(other_m)[_LEGS].sum() > params.limb_cost)
+
+
+def fit_to_keypoints(
+    fitter: Fitter,
+    state: MotionState,
+    keypoints: JointTerm,
+    held: Sequence[Term],
+    params: KeypointPoseParams,
+    limbs: Collection[str] = (),
+) -> MotionState:
+    """A pose fitted to the keypoints alone from this state; `limbs` start from two-bone IK."""
+    turn_rad = keypoints.turn_rad(fitter.joints(state)[0])
+    if abs(turn_rad) > params.turned_rad:
+        state = turned_about_vertical(state, turn_rad)
+    state = with_limbs_at_keypoints(fitter, state, keypoints, limbs)
+    terms = (*held, keypoints.trusting)
+    return fitter.fit(state, (), params.loose_s, params.iterations, terms=terms).state
 
 
 class KeypointPoses:

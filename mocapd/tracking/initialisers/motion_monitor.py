@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from mocapd.clock import nanoseconds
+from mocapd.tracking.base import LostReason
 from mocapd.tracking.cues.clothes.clothes_params import MotionMonitorParams
-from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Bytes
 from mocapd.vision.foreground_kernels import BEFORE
 

@@ -13,6 +13,7 @@ from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
+from mocapd.tracking.base import LostReason
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams, StartParams
 from mocapd.tracking.cues.keypoints.keypoint_consensus import agreed_keypoints
@@ -33,7 +34,6 @@ from mocapd.tracking.initialisers.standing_initialiser import (
     person_candidates,
     views_of,
 )
-from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Bytes, Camera, Floats
 from mocapd.vision.foreground_kernels import BACKGROUND
 

@@ -9,8 +9,8 @@ from mocapd.outputs.base import SinkStatus
 from mocapd.pipeline.metrics import Metrics
 from mocapd.pipeline.rolling import Percentiles
 from mocapd.service.service import Snapshot
+from mocapd.tracking.base import LostReason
 from mocapd.tracking.effort import Effort
-from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Tracking
 
 NOTHING = Percentiles(float("nan"), float("nan"))

@@ -18,9 +18,9 @@ from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
 from mocapd.tracking.cues.clothes.region_merge import RegionSolvers
 from mocapd.tracking.hypotheses.base import HypothesisContext, PoseEvidence, ScoredFit
-from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
-from mocapd.tracking.hypotheses.keypoint_starts import (
+from mocapd.tracking.hypotheses.keypoint_poses import (
     KeypointPoseParams,
+    KeypointPoses,
     keypoint_starts,
     legs_exchanged,
 )

@@ -16,7 +16,7 @@ from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.region_merge import RegionSolvers
 from mocapd.tracking.cues.clothes.regions import region_labels
 from mocapd.tracking.hypotheses.base import HypothesisContext, PoseEvidence, ScoredFit
-from mocapd.tracking.hypotheses.moved_limbs import MovedLimbs
+from mocapd.tracking.hypotheses.hypothesis_tests import MovedLimbs
 from mocapd.tracking.ticks import Ticks
 from tests.geometry.rigs import ring
 from tests.tracking.hypotheses.standing_body import BODY, drawn, standing

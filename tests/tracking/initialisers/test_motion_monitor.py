@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from mocapd.clock import nanoseconds
+from mocapd.tracking.base import LostReason
 from mocapd.tracking.cues.clothes.clothes_params import MotionMonitorParams
 from mocapd.tracking.initialisers.motion_monitor import MotionMonitor
-from mocapd.tracking.lost_reason import LostReason
 from mocapd.types import Bytes
 from mocapd.vision.foreground_kernels import BEFORE, SHADOW
 

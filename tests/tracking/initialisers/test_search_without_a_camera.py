@@ -5,8 +5,10 @@ from typing import Any
 
 import pytest
 
-from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
-from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
+from mocapd.tracking.cues.clothes.clothes_params import KeypointDetectionParams
+from mocapd.tracking.cues.keypoints.keypoint_detection import (
+    KeypointDetectors,
+)
 
 
 def test_keypoints_are_looked_for_in_the_cameras_that_are_there(

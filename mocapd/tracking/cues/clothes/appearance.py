@@ -14,14 +14,15 @@ from mocapd.body.arrays import plain
 from mocapd.tracking.cues.clothes.appearance_kernels import (
     BITS,
     DISTANCE_GRID_PX,
+    LANES,
     N_BINS,
     N_CLASSES,
     RegionCosts,
+    chamfer_distances,
     classify_regions,
     count_colours,
     log_table,
 )
-from mocapd.tracking.cues.clothes.region_distance_kernels import LANES, chamfer_distances
 from mocapd.tracking.cues.clothes.regions import Band, Region
 from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.foreground_kernels import SHADOW

@@ -13,9 +13,8 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.fit.work_size import work_size
 from mocapd.tracking.cues.clothes.appearance import region_distances
-from mocapd.tracking.cues.clothes.camera_view import CameraView
+from mocapd.tracking.cues.clothes.camera_view import CameraView, FloorView
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.cues.clothes.floor_view import FloorView
 from mocapd.types import Bytes, Floats
 from mocapd.vision.clip_background import clip_background
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, stands

@@ -14,7 +14,7 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointRays
 from mocapd.fit.view import View
 from mocapd.geometry.camera_model import sees_from_one_place
-from mocapd.tracking.base import Probe, frozen_clock
+from mocapd.tracking.base import LostReason, Probe, frozen_clock
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.clothes_solver import (
     ClothesEstimate,
@@ -27,7 +27,6 @@ from mocapd.tracking.cues.keypoints.keypoint_consensus import agreed_keypoints
 from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
-from mocapd.tracking.lost_reason import LostReason
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import BodyShapeEstimate, TrackState

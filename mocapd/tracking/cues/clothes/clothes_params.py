@@ -5,14 +5,26 @@ from dataclasses import dataclass, field
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams, MotionPriorParams
 from mocapd.fit.stereo_depth import StereoDepthParams
 from mocapd.fit.terms.floor_term import FloorParams, PlantedParams
+from mocapd.fit.terms.joint_term import JointTermParams
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
-from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
 from mocapd.tracking.hypotheses.hull_poses import ReachingParams
-from mocapd.tracking.hypotheses.keypoint_starts import KeypointPoseParams
+from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoseParams
 from mocapd.tracking.planted_feet import PlantedFeetParams
 from mocapd.tracking.velocity import VelocityParams
 from mocapd.vision.room_background import BackgroundParams
+
+
+@dataclass(frozen=True, slots=True)
+class KeypointDetectionParams:
+    """What the network's maps are worth."""
+
+    term: JointTermParams = field(default_factory=JointTermParams)
+    blur_cells2: float = 0.64  # variance that the maps were trained to have where a joint is sure
+    least_cells2: float = 0.16  # of a joint, however sure
+    laplace: float = 1.6  # standard deviation of depths, in scales of their distribution
+    least_depth_m: float = 0.04
+    inside_cells: float = 0.5  # from the border of the maps, nearer to which a joint may be outside
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ from mocapd.tracking.cues.clothes.region_merge import RegionSolverCache
 from mocapd.tracking.cues.clothes.regions import Region, silhouette_labels
 from mocapd.tracking.cues.clothes.wearer_appearance import WearerAppearance
 from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
-from mocapd.tracking.cues.stereo.depth_views import add_stereo_depth
+from mocapd.tracking.cues.stereo.stereo_distances import add_stereo_depth
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.hypotheses.base import WHOLE, HypothesisContext, PoseEvidence, ScoredFit
 from mocapd.tracking.hypotheses.hypothesis_tests import HypothesisTests

@@ -15,7 +15,7 @@ from mocapd.geometry.camera_model import to_camera, undistort
 from mocapd.geometry.rotations import rotate
 from mocapd.tracking.cues.clothes.camera_view import CameraView
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
-from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
+from mocapd.tracking.cues.clothes.clothes_params import KeypointDetectionParams
 from mocapd.types import Bytes, Floats, Singles
 from mocapd.vision.heatmaps.joint_network import (
     CELLS,

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mocapd.body.skeleton import INDEX, N_JOINTS
-from mocapd.tracking.cues.clothes.clothes_confidence import keypoint_agreement
+from mocapd.tracking.joint_confidence import keypoint_agreement
 
 
 def test_a_hand_that_its_keypoint_contradicts_is_believed_less() -> None:

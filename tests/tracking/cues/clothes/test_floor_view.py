@@ -3,7 +3,7 @@
 import numpy as np
 
 from mocapd.geometry.camera_model import project
-from mocapd.tracking.cues.clothes.floor_view import FloorView
+from mocapd.tracking.cues.clothes.camera_view import FloorView
 from tests.geometry.rigs import looking_at
 
 SCALE, ROI = 2, (20, 60, 300, 230)

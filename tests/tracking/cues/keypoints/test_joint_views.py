@@ -18,9 +18,10 @@ from mocapd.shirt.garment import shirt_labels
 from mocapd.sim.renderer import camera_renderers
 from mocapd.sim.world import World, rig_of
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
-from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
-from mocapd.tracking.cues.keypoints.keypoint_detection_params import KeypointDetectionParams
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams, KeypointDetectionParams
+from mocapd.tracking.cues.keypoints.keypoint_detection import (
+    KeypointDetectors,
+)
 from mocapd.vision.heatmaps.joint_network import (
     CELLS,
     INPUT_PX,

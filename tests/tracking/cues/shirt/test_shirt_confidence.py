@@ -11,7 +11,7 @@ from mocapd.fit.fit_result import Fit
 from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
 from mocapd.fit.view import View
 from mocapd.geometry.camera_model import project
-from mocapd.tracking.cues.shirt.shirt_confidence import joint_confidence
+from mocapd.tracking.joint_confidence import shirt_confidence
 from mocapd.types import Floats
 from tests.fit.synthetic import fitter, standing, views_of
 
@@ -48,7 +48,7 @@ def confidence(fit: Fit, n_cameras: int, away_s: float = 0.0) -> Floats:
     by = fitter(n_cameras)
     placed = pose_covariance(by.model, fit.H)
     uncertainty_m = joint_uncertainty_m(by.model, *by.joints(fit.state), placed)
-    out = joint_confidence(fit, n_cameras, uncertainty_m, away_s)
+    out = shirt_confidence(fit, n_cameras, uncertainty_m, away_s)
     assert out.shape == (N_JOINTS,)
     assert ((out >= 0.0) & (out <= 1.0)).all()
     return out
@@ -91,4 +91,4 @@ def test_confidence_fades_while_there_is_no_evidence() -> None:
 
 
 def test_nobody_is_nobody() -> None:
-    assert not joint_confidence(None, 2, np.full(N_JOINTS, np.inf), 0.0).any()
+    assert not shirt_confidence(None, 2, np.full(N_JOINTS, np.inf), 0.0).any()

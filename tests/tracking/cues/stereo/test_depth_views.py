@@ -10,8 +10,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.stereo_depth import StereoDepthParams
 from mocapd.fit.view import View
-from mocapd.tracking.cues.stereo.depth_views import add_stereo_depth
-from mocapd.tracking.cues.stereo.stereo_distances import GreyPicture
+from mocapd.tracking.cues.stereo.stereo_distances import GreyPicture, add_stereo_depth
 from mocapd.types import Camera
 from tests.fit.synthetic import CAMERAS, FACTOR, LABELS, MODEL, standing, textured_greys
 from tests.geometry.rigs import looking_at
