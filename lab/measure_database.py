@@ -20,7 +20,7 @@ from mocapd.geometry import rotations
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, render
 from mocapd.shirt.pose_database.database_file import load_or_build
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, unpack
-from mocapd.shirt.pose_database.idmap_distance import nearest_exact
+from mocapd.shirt.pose_database.idmap_index import nearest_exact
 from mocapd.shirt.pose_database.pose_sampling import PoseSet, poses_from_cube, random_cube
 from mocapd.types import Bytes, Floats, Ints, Pose
 

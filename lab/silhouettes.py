@@ -29,7 +29,7 @@ from mocapd.tracking.body_tracker import BodyTracker
 from mocapd.tracking.cues.clothes.camera_view import CameraView
 from mocapd.types import Camera, Floats, Singles
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, CLOTH_OR_SHADOW, SHADOW, stands
-from mocapd.vision.hull.soft_carve import CERTAIN, carve_log_odds, voxel_centres
+from mocapd.vision.hull.ray_hull import CERTAIN, carve_log_odds, voxel_centres
 
 Mask = NDArray[np.bool_]
 _KINDS = ("background", "network", "regions", "soft")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.published.wang2011.classify_kernels import classify, classify_with_prior
-from mocapd.shirt.colour.whitening import Whitening
+from mocapd.shirt.colour.colour_model import Whitening
 from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes, Floats, Singles
 

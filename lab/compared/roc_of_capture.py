@@ -33,10 +33,9 @@ from mocapd.fit.solver import Fitter
 from mocapd.fit.work_size import image_scales
 from mocapd.published.wang2011.classify_kernels import sum_colours
 from mocapd.published.wang2011.distance_maps import DistanceMaps
-from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.colour_model import ColourModel, fold
 from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.shirt.colour.white_balance import solve_white_balance
-from mocapd.shirt.colour.whitening import fold
 from mocapd.shirt.garment import shirt_labels
 from mocapd.tracking.cues.shirt.shirt_params import ShirtParams
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet

@@ -10,8 +10,7 @@ from mocapd.body.shape import FACTORS
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.calibration.calibration_record import Wearer
 from mocapd.capture.webcam.controls import Controls
-from mocapd.geometry.rig_file import camera_from_dict
-from mocapd.geometry.rig_plausibility import require_plausible
+from mocapd.geometry.rig_file import camera_from_dict, require_plausible
 from mocapd.types import Rig
 
 SCHEMA = 1

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import PosedJoints, camera_arrays, pinhole_arrays, plain
-from mocapd.body.model import BodyModel
+from mocapd.body.model import BodyModel, Shaped, Shaper
 from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
-from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.motion_state import MotionState, predict_pose
 from mocapd.fit.surface_labels import SurfaceLabels

@@ -10,9 +10,8 @@ from itertools import combinations
 import numpy as np
 
 from mocapd.body.arrays import PosedJoints, plain
-from mocapd.body.model import BodyModel
+from mocapd.body.model import BodyModel, Shaped, Shaper
 from mocapd.body.posing_kernels import forward_kinematics
-from mocapd.body.shaping import Shaped, Shaper
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import FitParams

@@ -1,5 +1,9 @@
-"""Rig files: JSON in the capture format, checked value by value before anything uses them."""
+"""Rig files: JSON in the capture format, checked value by value before anything uses them.
 
+Distances must be plausible for a room, which reveals a wrong unit.
+"""
+
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +13,7 @@ from mocapd.boundary.files import read_text
 from mocapd.boundary.numbers import brief
 from mocapd.boundary.parsing import parse_json
 from mocapd.errors import ConfigError, MalformedError, NewerFileError
-from mocapd.geometry.rig_plausibility import require_plausible
+from mocapd.geometry.camera_model import centre
 from mocapd.types import Camera, Floats, Rig
 
 SCHEMA = "mocapd.Rig.v1"  # also of files without a schema, as in the capture format
@@ -17,6 +21,10 @@ _RECALIBRATE = "calibrate again, or restore the file"
 _MOST_BYTES = 1_000_000  # a camera takes 1 kB
 _LARGEST_PX = 16_384  # of a picture's side
 _LARGEST = 1e6  # of any other number, in its unit: pixels or metres
+_FARTHEST_M = 60.0  # of cameras from each other, and from the middle of the floor: a large hall
+_USUAL_M = (0.3, 20.0)  # of a camera from the middle of the floor
+# metres per unit that other programs write
+_UNITS = {"millimetres": 1e-3, "centimetres": 1e-2, "inches": 0.0254, "feet": 0.3048}
 
 
 def _array(entry: dict[str, Any], key: str, shape: tuple[int, ...], where: str) -> Floats:
@@ -117,3 +125,39 @@ def camera_to_dict(camera: Camera) -> dict[str, Any]:
         "R": camera.R.tolist(),
         "t": camera.t_m.tolist(),
     }
+
+
+def require_plausible(rig: Rig, where: str) -> None:
+    """Raises ConfigError, naming distances and the likely unit, for cameras that fit no room."""
+    centres = {camera.name: centre(camera) for camera in rig.cameras}
+    farthest = max(centres, key=lambda name: float(np.linalg.norm(centres[name])))
+    away_m = float(np.linalg.norm(centres[farthest]))
+    for one, other in combinations(centres, 2):
+        apart_m = float(np.linalg.norm(centres[one] - centres[other]))
+        if apart_m > _FARTHEST_M:
+            raise ConfigError(
+                f"cameras {one!r} and {other!r} would be {_length(apart_m)} apart",
+                where,
+                _mend(away_m),
+            )
+    if away_m > _FARTHEST_M:
+        raise ConfigError(
+            f"camera {farthest!r} would be {_length(away_m)} from the middle of the floor",
+            where,
+            _mend(away_m),
+        )
+
+
+def _length(length_m: float) -> str:
+    return f"{length_m / 1e3:.1f} km" if length_m >= 1e3 else f"{length_m:.0f} m"
+
+
+def _mend(away_m: float) -> str:
+    """The error with the unit that would be plausible."""
+    low, high = _USUAL_M
+    middle = float(np.sqrt(low * high))
+    fitting = [name for name, unit_m in _UNITS.items() if low <= away_m * unit_m <= high]
+    if not fitting:
+        return "'t' is in metres: correct the file"
+    best = min(fitting, key=lambda name: abs(np.log(away_m * _UNITS[name] / middle)))
+    return f"'t' is in metres, and looks like {best}: multiply it by {_UNITS[best]:g}"

@@ -13,6 +13,8 @@ IDENTITY_XYZW = np.array([0.0, 0.0, 0.0, 1.0])
 # rounding, whatever it is; and the squares of lengths under 1e-162 would be 0 anyway.
 _TINY = 1e-300
 _CONJUGATE = np.array([-1.0, -1.0, -1.0, 1.0])
+_NEAR_ZERO_RAD = 1e-6  # where the series are exact to rounding
+_NEAR_ZERO_JACOBIAN_RAD = 1e-4
 
 
 def _table(terms: str) -> Floats:
@@ -139,3 +141,35 @@ def slerp(a_xyzw: Floats, b_xyzw: Floats, u: float | Floats) -> Floats:
     """Rotations on the shortest arc from a (u = 0) to b (u = 1); u broadcasts over the leading axes."""
     step = log(multiply(b_xyzw, inverse(a_xyzw)))
     return canonical(multiply(exp(np.asarray(u)[..., None] * step), a_xyzw))
+
+
+def cross_matrices(v: Floats) -> Floats:
+    """(...,3) to (...,3,3): [v]x u = v x u."""
+    out = np.zeros((*v.shape[:-1], 3, 3))
+    out[..., 0, 1], out[..., 0, 2], out[..., 1, 2] = -v[..., 2], v[..., 1], -v[..., 0]
+    out[..., 1, 0], out[..., 2, 0], out[..., 2, 1] = v[..., 2], -v[..., 1], v[..., 0]
+    return out
+
+
+def exp_matrices(rotvec_rad: Floats) -> Floats:
+    """Rotation vectors (...,3) [rad] to matrices (...,3,3) (Rodrigues)."""
+    angle = np.linalg.norm(rotvec_rad, axis=-1)[..., None, None]
+    K = cross_matrices(rotvec_rad)
+    small = angle < _NEAR_ZERO_RAD
+    safe = np.where(small, 1.0, angle)
+    a = np.where(small, 1.0, np.sin(safe) / safe)
+    b = np.where(small, 0.5, (1.0 - np.cos(safe)) / safe**2)
+    R: Floats = np.eye(3) + a * K + b * (K @ K)
+    return R
+
+
+def left_jacobians(rotvec_rad: Floats) -> Floats:
+    """(...,3,3): d exp(w) = [J dw]x exp(w) (Barfoot, State Estimation for Robotics, eq. 7.77)."""
+    angle = np.linalg.norm(rotvec_rad, axis=-1)[..., None, None]
+    K = cross_matrices(rotvec_rad)
+    small = angle < _NEAR_ZERO_JACOBIAN_RAD
+    safe = np.where(small, 1.0, angle)
+    b = np.where(small, 0.5, (1.0 - np.cos(safe)) / safe**2)
+    c = np.where(small, 1.0 / 6.0, (safe - np.sin(safe)) / safe**3)
+    J: Floats = np.eye(3) + b * K + c * (K @ K)
+    return J

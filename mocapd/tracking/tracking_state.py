@@ -14,6 +14,7 @@ from mocapd.types import BodyState, Floats, Tracking
 DRIFT_M_S = 0.4
 COAST_S = 0.5
 FADE_S = 0.15  # a joint's confidence falls to 1/e in this time without evidence
+_HALF_M = 0.05  # a contradiction that halves confidence
 
 
 def confidence_fade(away_s: float) -> float:
@@ -75,9 +76,6 @@ class TrackingState:
         if evidence:
             self._evidence_ns = t_ns
         return self.now
-
-
-_HALF_M = 0.05  # a contradiction that halves confidence
 
 
 def lower_confidence(body: BodyState, off_m: float) -> BodyState:

@@ -49,7 +49,7 @@ mean(a)
 print(f"numpy {numpy_s:.2f} s, one kernel {time.perf_counter() - began:.2f} s")
 """
 # a kernel that few others call, and a change of its code that changes no result
-_KERNEL, _CALL = "mocapd/shirt/segmentation/locate_kernels.py", "    h, w = "
+_KERNEL, _CALL = "mocapd/shirt/segmentation/segmentation_kernels.py", "    h, w = "
 
 
 @dataclass

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import plain
-from mocapd.body.model import build_model
+from mocapd.body.model import Shaper, build_model
 from mocapd.body.posing_kernels import forward_kinematics
-from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.motion_state import apply_step
 from mocapd.fit.terms.collision_kernels import SLICES, TorsoSlices, depth_in_torso, push_arms_out

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import PinholeArrays
-from mocapd.body.shaping import Shaper
+from mocapd.body.model import Shaper
 from mocapd.body.skeleton import INDEX
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import PosedJoints
-from mocapd.body.model import build_model
+from mocapd.body.model import Shaper, build_model
 from mocapd.body.pose_space import full_body
 from mocapd.body.posing_kernels import forward_kinematics
-from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, apply_step, initial_information

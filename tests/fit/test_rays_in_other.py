@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from mocapd.body.arrays import camera_arrays
-from mocapd.body.model import build_model
+from mocapd.body.model import Shaper, build_model
 from mocapd.body.pose_space import full_body
-from mocapd.body.shaping import Shaper
 from mocapd.fit.rays_in_other_kernels import (
     distances_of_triangles,
     evenly_between,

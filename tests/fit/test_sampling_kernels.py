@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from mocapd.fit.terms.map_sampling_kernels import N_GROUPS, N_PARTS, spread_over_groups
+from mocapd.fit.rays_in_other_kernels import N_GROUPS, N_PARTS, spread_over_groups
 from mocapd.types import Bytes, Ints
 
 pytestmark = pytest.mark.kernels

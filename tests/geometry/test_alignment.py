@@ -2,9 +2,13 @@
 
 import numpy as np
 
-from mocapd.geometry.alignment import align_directions, align_points, nearest_rotation
-from mocapd.geometry.rigid_transforms import RigidTransform
-from mocapd.geometry.rotation_matrices import exp_matrices
+from mocapd.geometry.rigid_transforms import (
+    RigidTransform,
+    align_directions,
+    align_points,
+    nearest_rotation,
+)
+from mocapd.geometry.rotations import exp_matrices
 
 R = exp_matrices(np.array([0.4, -2.1, 0.9]))
 A_FROM_B = RigidTransform(R, np.array([-2.4, 0.1, 1.5]))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform, concatenate, stack
-from mocapd.geometry.rotation_matrices import exp_matrices
+from mocapd.geometry.rotations import exp_matrices
 
 RNG = np.random.default_rng(3)
 

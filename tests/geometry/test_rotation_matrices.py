@@ -3,7 +3,7 @@
 import numpy as np
 
 from mocapd.geometry import rotations
-from mocapd.geometry.rotation_matrices import cross_matrices, exp_matrices, left_jacobians
+from mocapd.geometry.rotations import cross_matrices, exp_matrices, left_jacobians
 
 VECTORS = np.concatenate([np.random.default_rng(2).normal(size=(5, 3)), [[1e-9, 0, 0]]])
 

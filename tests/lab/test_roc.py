@@ -27,8 +27,7 @@ from mocapd.fit.solver import Fitter
 from mocapd.geometry.rotations import IDENTITY_XYZW, exp
 from mocapd.published.wang2011.distance_maps import DistanceMaps
 from mocapd.session.offline import RecordedTrack
-from mocapd.shirt.colour.colour_model import ColourModel
-from mocapd.shirt.colour.whitening import fold
+from mocapd.shirt.colour.colour_model import ColourModel, fold
 from mocapd.shirt.garment import shirt_labels
 from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes

@@ -12,13 +12,13 @@ from mocapd.shirt.segmentation.bare_skin import (
     statistics,
     whitening,
 )
-from mocapd.shirt.segmentation.bare_skin_kernels import bare_pixels
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
     ClassifierWeights,
     LearnedPixels,
     classify,
 )
+from mocapd.shirt.segmentation.segmentation_kernels import bare_pixels
 from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes, Floats
 from tests.fit.synthetic import CAMERAS, FACTOR, STATURE_M, fitter, standing

@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mocapd.shirt.pose_database.idmap_crop_kernels import MARGIN, SIZE, crop_id_map, pack, unpack
-from mocapd.shirt.pose_database.idmap_distance import nearest_exact
 from mocapd.shirt.pose_database.idmap_distance_kernels import (
     MISSING,
     squared_distances,
 )
+from mocapd.shirt.pose_database.idmap_index import nearest_exact
 from mocapd.types import Bytes, Floats
 
 

@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from mocapd.shirt.segmentation.locate_kernels import CAP, CELL, find_shirt, suppress_background
+from mocapd.shirt.segmentation.segmentation_kernels import (
+    CAP,
+    CELL,
+    find_shirt,
+    suppress_background,
+)
 from mocapd.types import Bytes, Ints
 
 H, W = 96, 128

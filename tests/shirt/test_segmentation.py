@@ -22,8 +22,8 @@ from mocapd.shirt.segmentation.segmentation_kernels import (
 )
 from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes, Floats, Ints, Singles
-from mocapd.vision.background_kernels import changed, learn_background
-from mocapd.vision.background_light import relight_background
+from mocapd.vision.foreground_kernels import changed, learn_background
+from mocapd.vision.room_background import relight_background
 
 H, W = 36, 48
 TOLERANCE = 0.05

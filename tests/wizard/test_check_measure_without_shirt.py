@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.body.model import build_model
+from mocapd.body.model import Shaper, build_model
 from mocapd.body.pose_space import full_body
 from mocapd.body.shape import BodyShape, mean_shape, skeleton_of
-from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import joint_positions
 from mocapd.calibrate.verification.check_measure import EVERY, Measure, MeasuringTracker
 from mocapd.fit.fit_params import FitParams

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.geometry import rotations
-from mocapd.geometry.alignment import align_directions
 from mocapd.geometry.camera_model import normalised
+from mocapd.geometry.rigid_transforms import align_directions
 from mocapd.types import Bytes, Camera, Floats, Singles
 
 _WIDTH_PX = 160  # of the small pictures: a turn of one degree is over two of their pixels

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from mocapd.calibrate.board.back_side import OFFSET, BackPrint
 from mocapd.geometry.reprojection import project_rows, projection_jacobians
 from mocapd.geometry.rigid_transforms import RigidTransform
-from mocapd.geometry.rotation_matrices import cross_matrices, exp_matrices, left_jacobians
+from mocapd.geometry.rotations import cross_matrices, exp_matrices, left_jacobians
 from mocapd.types import Floats, Ints
 
 POSE = 6  # a step of a pose: left rotation vector [rad], shift [m]

@@ -32,7 +32,7 @@ from mocapd.calibrate.extrinsics.solution_covariance import asked_covariances
 from mocapd.calibrate.extrinsics.sparse_least_squares import least_squares_steps
 from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, MeasuredIntrinsics
 from mocapd.geometry.reprojection import INTRINSICS
-from mocapd.geometry.rotation_matrices import cross_matrices
+from mocapd.geometry.rotations import cross_matrices
 from mocapd.types import Floats, Ints
 
 _FOLLOWED = 2.0  # longest gap [frames] for estimating the board's motion

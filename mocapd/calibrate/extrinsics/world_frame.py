@@ -7,10 +7,9 @@ import numpy as np
 
 from mocapd.calibrate.extrinsics.board_reprojection import Observations, ReprojectionProblem
 from mocapd.errors import ConfigError
-from mocapd.geometry.alignment import align_points, nearest_rotation
 from mocapd.geometry.camera_model import normalised
 from mocapd.geometry.reprojection import camera_matrix
-from mocapd.geometry.rigid_transforms import RigidTransform
+from mocapd.geometry.rigid_transforms import RigidTransform, align_points, nearest_rotation
 from mocapd.geometry.triangulation import triangulate
 from mocapd.types import Camera, Floats, Rig
 

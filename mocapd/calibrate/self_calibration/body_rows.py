@@ -14,7 +14,7 @@ from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import camera_from_world, with_extrinsics
 from mocapd.geometry.rigid_transforms import RigidTransform
-from mocapd.geometry.rotation_matrices import cross_matrices
+from mocapd.geometry.rotations import cross_matrices
 from mocapd.types import Bytes, Camera, Floats
 
 _PIXEL_WEIGHT = 255  # of unclassified pixels: less would let the body grow beyond its picture

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.errors import ConfigError
-from mocapd.geometry.alignment import align_points
-from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform
+from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform, align_points
 from mocapd.types import Floats
 
 _LEAST_POINTS = 80  # ten whole bodies

@@ -17,8 +17,7 @@ from mocapd.boundary.numbers import finite_number
 from mocapd.boundary.parsing import decode_json
 from mocapd.capture.capture_folder import STATURES_M
 from mocapd.errors import ConfigError, InputError, MalformedError
-from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict
-from mocapd.geometry.rig_plausibility import require_plausible
+from mocapd.geometry.rig_file import camera_from_dict, camera_to_dict, require_plausible
 from mocapd.types import Bytes, LabelledPicture, Rig
 
 RIG, WEARER = "rig.json", "wearer.json"

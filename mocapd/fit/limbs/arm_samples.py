@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.body.model import BodyModel
-from mocapd.body.shaping import Shaped
+from mocapd.body.model import BodyModel, Shaped
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEFT_ARM, LEFT_LEG, LEGS, RIGHT_ARM, RIGHT_LEG, TORSO
 from mocapd.fit.limbs.limb_search_kernels import ArmSamples

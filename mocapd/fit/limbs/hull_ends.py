@@ -17,7 +17,7 @@ from mocapd.fit.view import View
 from mocapd.fit.work_size import work_size
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Floats, Ints, Singles
-from mocapd.vision.hull.soft_carve import carve_log_odds
+from mocapd.vision.hull.ray_hull import carve_log_odds
 
 _BODY, _OTHER, _BACKGROUND = 1.5, -0.5, -3.0  # log-odds of the person, by what a pixel shows
 _MOST_RAYS = 100  # of a view

@@ -47,7 +47,10 @@ class ArmMotion:
 
 
 def load_arm_motion() -> ArmMotion:
-    """What is in calib/. Raises ConfigError when the file is none of this kind."""
+    """What is in calib/, trained by `lab.training.train_arm_motion` on clips of real motion.
+
+    Raises ConfigError when the file is none of this kind.
+    """
     path = asset_path(ASSET)
     data = read_json(path)
     mean, covariance = (np.asarray(data.get(k), float) for k in ("mean_xyzw", "covariance_rad2"))

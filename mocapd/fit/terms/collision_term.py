@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.arrays import PosedJoints, plain
-from mocapd.body.model import BodyModel
+from mocapd.body.model import BodyModel, Shaped
 from mocapd.body.pose_space import SIDES
-from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import TORSO
 from mocapd.fit.terms.collision_kernels import SLICES, ArmChains, TorsoSlices, push_arms_out

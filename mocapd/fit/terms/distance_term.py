@@ -7,8 +7,7 @@ the surface with stereo points; here each point has the triangle it was predicte
 from dataclasses import dataclass
 
 from mocapd.body.arrays import PosedJoints, plain
-from mocapd.body.model import BodyModel
-from mocapd.body.shaping import Shaped
+from mocapd.body.model import BodyModel, Shaped
 from mocapd.fit.terms.point_rows_kernels import pull_along_rays
 from mocapd.types import Floats, Ints
 

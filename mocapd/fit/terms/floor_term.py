@@ -9,12 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from mocapd.body.arrays import PosedJoints, plain
-from mocapd.body.model import BodyModel
+from mocapd.body.model import BodyModel, Shaped
 from mocapd.body.pose_space import SIDES
-from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import INDEX
 from mocapd.fit.terms.point_rows_kernels import hold_on_floor, stand_on_floor
 from mocapd.types import Floats, Ints
+
+_TOES = [INDEX[side + "Toes"] for side in SIDES]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,9 +46,6 @@ class FloorTerm:
             p.together_m, p.jump_m, plain(m.articulation), plain(posed), H, b,
         )  # fmt: skip
         return cost
-
-
-_TOES = [INDEX[side + "Toes"] for side in SIDES]
 
 
 @dataclass(frozen=True, slots=True)

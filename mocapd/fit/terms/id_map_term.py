@@ -7,8 +7,7 @@ from functools import cache, partial
 import numpy as np
 
 from mocapd.body.areas import N_AREAS
-from mocapd.body.model import BodyModel
-from mocapd.body.shaping import Shaped
+from mocapd.body.model import BodyModel, Shaped
 from mocapd.each import Each
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.idmap_renderer import IdMapRenderer

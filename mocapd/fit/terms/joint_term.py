@@ -13,9 +13,8 @@ from functools import cached_property
 import numpy as np
 
 from mocapd.body.arrays import PosedJoints, plain
-from mocapd.body.model import BodyModel
+from mocapd.body.model import BodyModel, Shaped
 from mocapd.body.pose_space import SIDES
-from mocapd.body.shaping import Shaped
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.terms.joint_rows_kernels import pull_at_joints, turn_level
 from mocapd.geometry.camera_model import from_camera, to_camera

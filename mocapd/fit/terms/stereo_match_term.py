@@ -7,13 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import camera_arrays
-from mocapd.body.shaping import Shaped
+from mocapd.body.model import Shaped
 from mocapd.body.surface import LEFT_LEG, RIGHT_LEG
 from mocapd.each import Each, in_turn
 from mocapd.fit.idmap_renderer import IdMapRenderer
-from mocapd.fit.rays_in_other_kernels import distances_of_triangles, shown_on_rays
+from mocapd.fit.rays_in_other_kernels import (
+    N_GROUPS,
+    N_PARTS,
+    distances_of_triangles,
+    shown_on_rays,
+    spread_over_groups,
+)
 from mocapd.fit.terms.distance_term import MeasuredDistances
-from mocapd.fit.terms.map_sampling_kernels import N_GROUPS, N_PARTS, spread_over_groups
 from mocapd.fit.work_rays import rays_at, work_rays_in_world
 from mocapd.geometry.camera_model import centre
 from mocapd.types import Bytes, Camera, Ints

@@ -3,7 +3,7 @@
 from typing import Protocol
 
 from mocapd.body.arrays import PosedJoints
-from mocapd.body.shaping import Shaped
+from mocapd.body.model import Shaped
 from mocapd.types import Floats
 
 

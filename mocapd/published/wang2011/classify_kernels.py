@@ -30,7 +30,7 @@ def classify(
 ) -> tuple[int, int]:
     """Write the id 1..10 of the nearest colour within `threshold` [standard deviations], else 0.
 
-    pixels_bgr (H,W,3); upper (10,3,3) and offset (10,3) of `whitening.fold`; out (h,w). Returns
+    pixels_bgr (H,W,3); upper (10,3,3) and offset (10,3) of `colour_model.fold`; out (h,w). Returns
     the counts of classified and of foreground samples.
     """
     limit = np.float32(threshold * threshold)

@@ -10,13 +10,12 @@ from mocapd.published.wang2011.drawing import Grid, PatchRenderer
 from mocapd.published.wang2011.mog_background import BackgroundSubtractor
 from mocapd.published.wang2011.params import Params
 from mocapd.published.wang2011.patch_kernels import inner_ids
-from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.colour_model import ColourModel, fold
 from mocapd.shirt.colour.white_balance import (
     remember_illumination,
     shade_precision,
     solve_white_balance,
 )
-from mocapd.shirt.colour.whitening import fold
 from mocapd.shirt.pose_database.idmap_crop_kernels import crop_id_map
 from mocapd.types import Bytes, Camera, Floats, Singles
 

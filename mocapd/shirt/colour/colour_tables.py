@@ -5,9 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mocapd.errors import ConfigError
-from mocapd.shirt.colour.colour_model import ColourModel
+from mocapd.shirt.colour.colour_model import ColourModel, fold
 from mocapd.shirt.colour.lut_kernels import TABLE_SIZE, build_tables
-from mocapd.shirt.colour.whitening import fold
 from mocapd.types import Bytes, Floats
 
 

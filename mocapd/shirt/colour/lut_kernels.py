@@ -24,7 +24,7 @@ def build_tables(
     threshold: float,
     ids: UInt8,
 ) -> None:
-    """Fill a table from the maps of `whitening.fold`.
+    """Fill a table from the maps of `colour_model.fold`.
 
     ids (TABLE_SIZE,): the nearest colour's id 1..10 where it is within `threshold`, else 0. A cell
     counts as the colour at its centre.

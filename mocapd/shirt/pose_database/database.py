@@ -8,13 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import plain
-from mocapd.body.model import BodyModel, build_model
-from mocapd.body.shaping import Shaped
+from mocapd.body.model import BodyModel, Shaped, build_model
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import normalised
 from mocapd.shirt.garment import shirt_labels
-from mocapd.shirt.pose_database import idmap_crop_kernels, idmap_descriptor_kernels
+from mocapd.shirt.pose_database import idmap_crop_kernels, idmap_index_kernels
 from mocapd.shirt.pose_database.idmap_crop_kernels import unpack
 from mocapd.shirt.pose_database.idmap_index import (
     PACKED,
@@ -146,7 +145,7 @@ def content_hash(params: DatabaseParams) -> str:
     digest = hashlib.sha256()
     constants = (
         VERSION, CANVAS, idmap_crop_kernels.SIZE, idmap_crop_kernels.MARGIN, idmap_crop_kernels.TRIM,
-        idmap_descriptor_kernels.BLOCK, _POWER, _CHUNK, _FITTED, _LLOYD_ROUNDS,
+        idmap_index_kernels.BLOCK, _POWER, _CHUNK, _FITTED, _LLOYD_ROUNDS,
     )  # fmt: skip
     digest.update(repr((params, constants, ARMS, TORSOS)).encode())
     model = build_model(params.stature_m)

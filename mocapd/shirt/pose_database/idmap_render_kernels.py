@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import SkinArrays
+from mocapd.body.model import Shaped
 from mocapd.body.posing_kernels import forward_kinematics, quat_multiply, skin_and_project
-from mocapd.body.shaping import Shaped
 from mocapd.kernels.decorator import kernel
 from mocapd.shirt.pose_database.idmap_crop_kernels import SIZE, crop_window, pack, resample
 from mocapd.vision.raster_kernels import label_triangles, rasterise

@@ -16,7 +16,6 @@ from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.colour.white_balance import remember_illumination
 from mocapd.shirt.segmentation import bare_skin
 from mocapd.shirt.segmentation import shirt_appearance as looks
-from mocapd.shirt.segmentation.bare_skin_kernels import bare_pixels
 from mocapd.shirt.segmentation.cell_kernels import (
     CELL,
     ClassifierWeights,
@@ -24,11 +23,13 @@ from mocapd.shirt.segmentation.cell_kernels import (
     classify,
     colour_distances,
 )
-from mocapd.shirt.segmentation.locate_kernels import find_shirt, suppress_background
 from mocapd.shirt.segmentation.segmentation_kernels import (
     agreement,
+    bare_pixels,
     colour_statistics,
     count_colours,
+    find_shirt,
+    suppress_background,
 )
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 from mocapd.shirt.segmentation.shirt_appearance import ShirtAppearance

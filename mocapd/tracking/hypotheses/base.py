@@ -21,6 +21,7 @@ from mocapd.tracking.ticks import Ticks
 from mocapd.types import Floats
 
 WHOLE = "whole"  # as a part that changed: all of the body
+_LONG_BONES = np.array([bone for limb in LIMBS.values() for bone in (limb.upper, limb.lower)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,9 +74,6 @@ class PoseHypothesis(Protocol):
     def test(self, now: ScoredFit, at: HypothesisContext, /) -> ScoredFit:
         """The current fit, or one that the pictures confirm better."""
         ...
-
-
-_LONG_BONES = np.array([bone for limb in LIMBS.values() for bone in (limb.upper, limb.lower)])
 
 
 def best_start(

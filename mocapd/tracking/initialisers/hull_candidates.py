@@ -3,7 +3,7 @@
 A blob of one picture may hold a person, the light on the floor before and somebody behind. In space these come apart: what
 stands above a place of the floor in the hull of all foregrounds is a candidate. Each camera's blob is the part of its
 foreground that the candidate covers, with all below: legs in the colour of the lawn behind them are carved away. The carve is
-the soft one of `vision/hull/soft_carve.py`, so that possible shadows count little, and nothing is carved where a background
+the soft one of `vision/hull/ray_hull.py`, so that possible shadows count little, and nothing is carved where a background
 is unknown.
 """
 
@@ -19,8 +19,7 @@ from mocapd.tracking.cues.clothes.clothes_params import HullStartParams
 from mocapd.tracking.initialisers.standing_initialiser import Blob, PersonCandidate, blob_within
 from mocapd.types import Bytes, Camera, Floats, Singles
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, UNKNOWN
-from mocapd.vision.hull.ray_hull import box_about, views_of
-from mocapd.vision.hull.soft_carve import carve_log_odds, voxel_centres
+from mocapd.vision.hull.ray_hull import box_about, carve_log_odds, views_of, voxel_centres
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,9 +3,8 @@
 import cv2
 import numpy as np
 
-from mocapd.body.model import BodyModel, shape_of
+from mocapd.body.model import BodyModel, Shaper, shape_of
 from mocapd.body.shape import skeleton_of
-from mocapd.body.shaping import Shaper
 from mocapd.body.skeleton import global_from_local, joint_positions
 from mocapd.calibrate.body_shape.body_shape_fit import BodyObservation
 from mocapd.fit.fit_params import FitParams

@@ -5,9 +5,9 @@ import pytest
 
 from mocapd.errors import ConfigError
 from mocapd.published.wang2011.classify_kernels import classify, classify_with_prior, sum_colours
+from mocapd.shirt.colour.colour_model import fold
 from mocapd.shirt.colour.colour_tables import ColourTables
 from mocapd.shirt.colour.lut_kernels import classify_by_table
-from mocapd.shirt.colour.whitening import fold
 from mocapd.types import Bytes
 from tests.published.wang2011 import naive
 from tests.shirt.example_colours import MEANS, example_model, example_white_balance

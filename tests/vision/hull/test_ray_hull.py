@@ -12,8 +12,8 @@ from mocapd.vision.hull.ray_hull import (
     points_on,
     ray_hull,
     views_of,
+    voxel_centres,
 )
-from mocapd.vision.hull.soft_carve import voxel_centres
 from tests.vision.hull.ring_of_cameras import (
     BOX_M,
     FIGURE,

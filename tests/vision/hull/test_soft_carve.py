@@ -3,7 +3,7 @@
 import numpy as np
 
 from mocapd.types import Floats
-from mocapd.vision.hull.soft_carve import CERTAIN, carve_log_odds, point_log_odds, voxel_centres
+from mocapd.vision.hull.ray_hull import CERTAIN, carve_log_odds, point_log_odds, voxel_centres
 from tests.vision.hull.ring_of_cameras import BOX_M, FIGURE, inside_figure, silhouette
 from tests.vision.hull.test_ray_hull import CAMERAS, MASKS, inside_masks
 

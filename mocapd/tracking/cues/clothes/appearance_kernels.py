@@ -1,4 +1,9 @@
-"""Colours of the body's regions as histograms, and which region a pixel belongs to."""
+"""Colours of the body's regions as histograms, and which region a pixel belongs to.
+
+How far each pixel is from each region of the drawn body is found for all regions at once, by the two passes of the chamfer
+distance (Borgefors 1986), in OpenCV's weights. Vector instructions take the regions of a pixel side by side, so that all take
+less than half of the time of a distance transform for each.
+"""
 
 from typing import NamedTuple
 
@@ -13,6 +18,9 @@ N_CLASSES = 8  # the seven regions, and 0: none of them
 BITS = 4  # of each channel
 DISTANCE_GRID_PX = 2  # no colour depends on a pixel's distance
 N_BINS = 1 << 3 * BITS
+LANES = 8  # places of a pixel, of which the regions 1.. take the first ones
+_BESIDE_PX, _ACROSS_PX = 0.955, 1.3693
+_FAR_PX = 1e3
 
 
 class RegionCosts(NamedTuple):
@@ -149,11 +157,6 @@ def classify_regions(
             person = min(max(person, -np.float32(person_most)), np.float32(person_most))
             if best < other + person:
                 out[y, x] = found
-
-
-LANES = 8  # places of a pixel, of which the regions 1.. take the first ones
-_BESIDE_PX, _ACROSS_PX = 0.955, 1.3693
-_FAR_PX = 1e3
 
 
 @kernel

@@ -21,6 +21,8 @@ _OUTLINE_OFFSET = np.ones(
     (13, 13), np.uint8
 )  # half of it: distance of the pixels that are compared with the outline's
 _OUTLINE_WIDTH = np.ones((3, 3), np.uint8)
+_REACH_M = 1.5  # shadows of a lamp at the ceiling are shorter than that; those of low lamps fall on walls, too
+_FAR_M = 1e3
 
 
 class CameraView:
@@ -117,10 +119,6 @@ class CameraView:
 
 def _outline(mask: Bytes) -> NDArray[np.bool_]:
     return np.asarray(cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, _OUTLINE_WIDTH) > 0)
-
-
-_REACH_M = 1.5  # shadows of a lamp at the ceiling are shorter than that; those of low lamps fall on walls, too
-_FAR_M = 1e3
 
 
 class FloorView:

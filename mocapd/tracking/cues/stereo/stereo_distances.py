@@ -17,6 +17,7 @@ from mocapd.geometry.camera_model import centre
 from mocapd.types import Bytes
 
 GreyPicture = Callable[[int], Bytes]  # of the camera of an index, (h,w) as delivered
+_SURE = np.uint8(255)
 
 
 def stereo_distance_terms(
@@ -52,9 +53,6 @@ def stereo_distance_terms(
         fitter.each,
     )
     return (DistanceTerm(fitter.model, measured),)
-
-
-_SURE = np.uint8(255)
 
 
 def add_stereo_depth(
