@@ -8,13 +8,13 @@ from functools import cache
 import numpy as np
 
 from lab.rao_hodges.clip_angles import LimbAngles, angle_errors
+from lab.rao_hodges.silhouette_weight import SilhouetteWeight
 from lab.rao_hodges.synthetic_views import cameras_around, silhouettes_of
 from mocapd.body.skeleton import standard_skeleton
 from mocapd.published.rao_hodges.annealing import AnnealingParams, SearchSpace, Weigh, anneal
 from mocapd.published.rao_hodges.limb_chain import LimbChain, arm, legs
 from mocapd.published.rao_hodges.limb_motion import search_space
 from mocapd.published.rao_hodges.limb_weight import (
-    SilhouetteWeight,
     match_points,
     places_within,
     pose_limb,

@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from mocapd.body.bones import NAMES, PARENT_OF
-from mocapd.body.skeleton import INDEX, joint_positions
+from mocapd.body.skeleton import INDEX, global_from_local, joint_positions
 from mocapd.errors import InputError
 from mocapd.geometry import rotations
-from mocapd.sim.person.motion import upright_pose
+from mocapd.sim.person.motion import local_rotvecs
+from mocapd.sim.person_spec import PoseKeyframe
 from mocapd.sim.world import Performed, PoseAt
 from mocapd.types import Floats, Pose, Skeleton
 
@@ -18,6 +19,14 @@ _FIELDS = ("fps", "names", "rest_offsets", "global_quats", "hips_pos")
 _MENDED = "give a folder of clips of motion"
 _LEG = ("LowerLeg", "Foot")
 _SIDES = ("left", "right")
+
+
+def upright_pose(skeleton: Skeleton, pose: str, heading_rad: float) -> Pose:
+    """One of POSES at the origin, with straight legs."""
+    local = rotations.exp(local_rotvecs(PoseKeyframe(t_s=0.0, pose=pose)))
+    local[0] = rotations.exp(np.array([0.0, heading_rad, 0.0]))
+    root = np.array([0.0, skeleton.rest_m[0, 1], 0.0])
+    return Pose(root, rotations.canonical(global_from_local(skeleton, local)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

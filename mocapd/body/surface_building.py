@@ -10,7 +10,7 @@ import numpy as np
 
 from mocapd.body.arm_tubes import arm_tube
 from mocapd.body.leg_tubes import foot_tube, leg_tube, plain_leg_tube
-from mocapd.body.shape import N_FACTORS, BodyShape, mean_shape, skeleton_of
+from mocapd.body.shape import N_FACTORS, BodyShape, skeleton_of
 from mocapd.body.surface import Surface, Tube, join_tubes, tube_points
 from mocapd.body.trunk_tubes import head_tube, torso_tube
 from mocapd.types import Floats, Skeleton
@@ -77,8 +77,3 @@ def shape_derivatives(
         dv.append((ends[1][0] - ends[0][0]) / (2 * step))
         dj.append((ends[1][1] - ends[0][1]) / (2 * step))
     return np.array(dv), np.array(dj)
-
-
-def mean_surface(stature_m: float) -> Surface:
-    """The surface, with rough legs, of the mean body of this stature."""
-    return build_surface(mean_shape(stature_m))

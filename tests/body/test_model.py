@@ -3,10 +3,10 @@
 import numpy as np
 
 from mocapd.body.model import build_model, shape_of, shaped
-from mocapd.body.shape import skeleton_of
+from mocapd.body.shape import mean_shape, skeleton_of
 from mocapd.body.skeleton import INDEX
 from mocapd.body.surface import LEGS
-from mocapd.body.surface_building import build_surface, mean_surface
+from mocapd.body.surface_building import build_surface
 
 STATURE_M = 1.66
 MODEL = build_model(STATURE_M)
@@ -14,7 +14,7 @@ FACTORS = np.array([0.97, 1.05, 0.98, 1.06, 0.9, 1.1, 0.85])
 
 
 def test_it_holds_the_surface_without_the_legs() -> None:
-    surface = mean_surface(STATURE_M)
+    surface = build_surface(mean_shape(STATURE_M))
     keep = surface.part != LEGS
     np.testing.assert_array_equal(
         MODEL.vertices_m[MODEL.triangles], surface.vertices_m[surface.triangles[keep]]
@@ -24,7 +24,7 @@ def test_it_holds_the_surface_without_the_legs() -> None:
 
 
 def test_kept_skin_weights_are_all_the_weights() -> None:
-    surface = mean_surface(STATURE_M)
+    surface = build_surface(mean_shape(STATURE_M))
     used = np.unique(surface.triangles[surface.part != LEGS])
     dense = np.zeros_like(surface.weights[used])
     np.put_along_axis(dense, MODEL.bones.astype(int), MODEL.weights, axis=1)

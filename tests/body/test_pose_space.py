@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from mocapd.body.joint_limits import soft_limit
 from mocapd.body.pose_space import full_body, upper_body
 from mocapd.body.shape import FACTORS, WHOLE_FACTORS
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.errors import ConfigError
 from mocapd.geometry import rotations
 from mocapd.types import Floats
+from tests.body.soft_limits import soft_limit
 
 MIRROR = np.array([1.0, -1.0, -1.0])  # of a rotation vector, in x = 0
 

@@ -16,9 +16,10 @@ from mocapd.body.posing_kernels import (
     retract,
     skin_and_project,
 )
+from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX, N_JOINTS, PARENTS, joint_positions
 from mocapd.body.surface import LEGS, posed_vertices
-from mocapd.body.surface_building import mean_surface
+from mocapd.body.surface_building import build_surface
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, to_camera
 from mocapd.types import Camera, Floats, Skeleton
@@ -90,7 +91,7 @@ def test_skinning_and_projection_equal_the_plain_path(seed: int) -> None:
     root, local = random_root(seed), random_local(seed)
     body = skeleton()
     posed = posed_joints(body.rest_m, root, local)
-    surface = mean_surface(STATURE_M)
+    surface = build_surface(mean_shape(STATURE_M))
     used = np.unique(surface.triangles[surface.part != LEGS])
     world = posed_vertices(surface, body, pose_of(body, root, local), posed.joints)[used]
     camera, offset, scale = ring(3)[seed % 3], np.array([37.0, -14.0]), 0.5

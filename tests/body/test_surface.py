@@ -23,7 +23,6 @@ from mocapd.body.surface import (
 from mocapd.body.surface_building import (
     build_surface,
     build_whole_surface,
-    mean_surface,
     shape_derivatives,
 )
 from mocapd.shirt.standard_shirt import N_PATCHES, standard_shirt
@@ -132,13 +131,13 @@ def test_arm_patches_are_where_the_standard_says(shape: BodyShape, side: str) ->
 
 
 def test_every_patch_is_there_and_only_on_the_shirt() -> None:
-    surface = mean_surface(STATURE_M)
+    surface = build_surface(mean_shape(STATURE_M))
     assert set(surface.area) == set(range(N_PATCHES + 1))
     assert (surface.material[surface.area > 0] == TOP).all()
 
 
 def test_neighbouring_patches_differ_in_colour() -> None:
-    surface, colour = mean_surface(STATURE_M), standard_shirt().colour_of_patch
+    surface, colour = build_surface(mean_shape(STATURE_M)), standard_shirt().colour_of_patch
     patches_at: dict[int, set[int]] = {}
     for triangle, patch in zip(surface.triangles, surface.area, strict=True):
         for vertex in triangle:
@@ -190,7 +189,7 @@ def test_skin_weights_are_shares() -> None:
 def test_the_surface_is_linear_in_the_shape_factors() -> None:
     d_vertices, d_rest = shape_derivatives(STATURE_M)
     assert len(d_vertices) == len(d_rest) == N_FACTORS
-    mean = mean_surface(STATURE_M).vertices_m
+    mean = build_surface(mean_shape(STATURE_M)).vertices_m
     offset = ODD.factors - 1.0
     predicted = mean + np.tensordot(offset, d_vertices, axes=1)
     rebuilt = build_surface(ODD).vertices_m
@@ -201,7 +200,10 @@ def test_the_surface_is_linear_in_the_shape_factors() -> None:
 
 
 def test_the_surface_grows_with_stature() -> None:
-    small, tall = mean_surface(1.5).vertices_m, mean_surface(1.8).vertices_m
+    small, tall = (
+        build_surface(mean_shape(1.5)).vertices_m,
+        build_surface(mean_shape(1.8)).vertices_m,
+    )
     np.testing.assert_allclose(tall, 1.2 * small, atol=1e-9)
 
 

@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import connected_components
 from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.derivative_kernels import surface_row
 from mocapd.body.joint_limit_kernels import limit_residuals
-from mocapd.body.joint_limits import from_swing_twist, soft_limit
+from mocapd.body.joint_limits import from_swing_twist
 from mocapd.body.model import build_model, shape_of, shaped
 from mocapd.body.pose_space import full_body
 from mocapd.body.posing_kernels import difference, forward_kinematics, retract
@@ -24,6 +24,7 @@ from mocapd.body.surface_building import (
 from mocapd.geometry import rotations
 from mocapd.types import Floats, Ints
 from tests.body.random_poses import random_local, random_root
+from tests.body.soft_limits import soft_limit
 
 STATURE_M = 1.74
 SPACE = full_body()

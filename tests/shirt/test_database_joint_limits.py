@@ -5,13 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mocapd.body.joint_limits import from_swing_twist, soft_limit, swing_twist
+from mocapd.body.joint_limits import from_swing_twist, swing_twist
 from mocapd.body.model import build_model
 from mocapd.body.pose_space import upper_body
 from mocapd.body.posing_kernels import retract
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.geometry import rotations
 from mocapd.types import Floats
+from tests.body.soft_limits import soft_limit
 
 SPACE = upper_body()
 LIMITS, GROUPS = SPACE.limits, SPACE.groups

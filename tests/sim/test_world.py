@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mocapd.assets import asset_path
-from mocapd.body.joint_limits import soft_limit
 from mocapd.body.pose_space import upper_body
 from mocapd.body.skeleton import INDEX, PARENTS, joint_positions, local_from_global
 from mocapd.geometry.camera_model import project
 from mocapd.sim.scenario import load_scenario
 from mocapd.sim.world import World, light_levels, rig_of
+from tests.body.soft_limits import soft_limit
 from tests.sim.small import LAMP_OFF_S, LAMP_ON_S, scenario
 
 TIMES = st.floats(0.0, 40.0)

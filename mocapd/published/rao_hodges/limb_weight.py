@@ -1,6 +1,5 @@
-"""Weights of a limb's particles: by points in space as in the paper, by silhouettes, and by empty ellipsoids."""
+"""Weights of a limb's particles: by points in space as in the paper, and by empty ellipsoids."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,9 +7,7 @@ import numpy as np
 from mocapd.published.rao_hodges.chain_kernels import pose_chain, share_inside
 from mocapd.published.rao_hodges.limb_chain import LimbChain
 from mocapd.published.rao_hodges.point_cloud import PointCloud
-from mocapd.types import Bytes, Camera, Floats
-from mocapd.vision.hull.hull_kernels import sum_at_points
-from mocapd.vision.hull.picture_stack import StackProjections, stack_pictures, stack_projections
+from mocapd.types import Floats
 
 _SAMPLES = 24  # of each ellipsoid
 _GOLDEN_RAD = np.pi * (3.0 - np.sqrt(5.0))
@@ -84,24 +81,3 @@ def places_within(chain: LimbChain, pose: PosedChain) -> Floats:
     turned = np.matmul(local[None], np.swapaxes(pose.R, -1, -2))
     places: Floats = turned + pose.joints_m[:, :, None]
     return places
-
-
-class SilhouetteWeight:
-    """The weight of Deutscher 2000 without edges: which share of the model falls on the silhouettes of all cameras."""
-
-    def __init__(self, cameras: Sequence[Camera], silhouettes: Sequence[Bytes]) -> None:
-        """silhouettes (h,w): 0 is background; each shows its camera's whole frame."""
-        sizes = [(mask.shape[1], mask.shape[0]) for mask in silhouettes]
-        self._projections: StackProjections = stack_projections(cameras, sizes)
-        self._maps = np.asarray(
-            stack_pictures([(mask > 0).astype(np.float32) for mask in silhouettes]), np.float32
-        )
-
-    def __call__(self, chain: LimbChain, pose: PosedChain) -> Floats:
-        """(N,) of particles."""
-        places = places_within(chain, pose)
-        flat = np.ascontiguousarray(places.reshape(-1, 3))
-        sums, n_views = np.empty(len(flat), np.float32), np.empty(len(flat), np.uint8)
-        sum_at_points(flat, self._maps, *self._projections, 0.0, sums, n_views)
-        weight: Floats = sums.reshape(len(places), -1).mean(axis=1).astype(float) / len(self._maps)
-        return weight

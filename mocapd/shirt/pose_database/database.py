@@ -14,7 +14,6 @@ from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import normalised
 from mocapd.shirt.garment import shirt_labels
 from mocapd.shirt.pose_database import idmap_crop_kernels, idmap_index_kernels
-from mocapd.shirt.pose_database.idmap_crop_kernels import unpack
 from mocapd.shirt.pose_database.idmap_index import (
     PACKED,
     IdMapIndex,
@@ -76,12 +75,6 @@ class PoseDatabase:
 
     def __len__(self) -> int:
         return len(self.local_xyzw)
-
-    def id_map(self, i: int) -> Bytes:
-        """The 40x40 id map of pose i."""
-        out = np.empty((idmap_crop_kernels.SIZE, idmap_crop_kernels.SIZE), np.uint8)
-        unpack(self.index.packed_maps[i], out)
-        return out
 
     def nearest(
         self, id_map: Bytes, k: int = 10, probes: int = 24, reranked: int = 80

@@ -100,14 +100,6 @@ def pose_at(motion: Motion, t_s: float) -> Pose:
     return Pose(root, rotations.canonical(quats))
 
 
-def upright_pose(skeleton: Skeleton, pose: str, heading_rad: float) -> Pose:
-    """One of POSES at the origin, with straight legs."""
-    local = rotations.exp(local_rotvecs(PoseKeyframe(t_s=0.0, pose=pose)))
-    local[0] = rotations.exp(np.array([0.0, heading_rad, 0.0]))
-    root = np.array([0.0, skeleton.rest_m[0, 1], 0.0])
-    return Pose(root, rotations.canonical(global_from_local(skeleton, local)))
-
-
 def _plant_feet(motion: Motion, t_s: float, root_m: Floats, quats: Floats) -> None:
     """Turn the legs (in place in quats) so that the feet are where they stand or step."""
     rest = motion.skeleton.rest_m

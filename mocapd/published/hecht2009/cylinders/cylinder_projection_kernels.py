@@ -75,28 +75,13 @@ def project_frustum(
 
 
 @kernel
-def project_limbs(
-    points: Array, radii: Array, camera: WorkCamera, quads: Array, depths: Array
-) -> None:
-    """Both parts of N limbs: points (N,3,3) [m, world], radii (2,2) of each part's ends [m].
-
-    quads (N,2,4,2) [work px]; depths (N,2,2): of each part's ends [m]; quads of what is not before the camera: NaN.
-    """
-    p = np.empty((3, 3))
-    for n in range(points.shape[0]):
-        for i in range(3):
-            to_camera_frame(camera, points[n, i], p[i])
-        for f in range(2):
-            depths[n, f, 0], depths[n, f, 1] = p[f, 2], p[f + 1, 2]
-            if not project_frustum(camera, p[f], p[f + 1], radii[f, 0], radii[f, 1], quads[n, f]):
-                quads[n, f] = np.nan
-
-
-@kernel
 def project_parts(
     ends: Array, radii: Array, camera: WorkCamera, quads: Array, depths: Array
 ) -> None:
-    """Parts of one body: ends (C,2,3) [m, world], radii (C,2) [m]; quads (C,4,2), depths (C,2) as of `project_limbs`."""
+    """Parts of one body: ends (C,2,3) [m, world], radii (C,2) of each part's ends [m].
+
+    quads (C,4,2) [work px]; depths (C,2): of each part's ends [m]; quads of what is not before the camera: NaN.
+    """
     a, b = np.empty(3), np.empty(3)
     for c in range(ends.shape[0]):
         to_camera_frame(camera, ends[c, 0], a)

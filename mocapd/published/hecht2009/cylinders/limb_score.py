@@ -104,18 +104,6 @@ def log_scores(
     return out
 
 
-def score_limbs(
-    points_m: Floats,
-    radii_m: Floats,
-    parts: tuple[int, int],
-    views: Sequence[LimbView],
-    usual: UsualPenalties,
-    params: LimbScoreParams,
-) -> Floats:
-    """Logarithm (N,) of the likelihoods of N particles; arguments as of `limb_penalties` and `log_scores`."""
-    return log_scores(limb_penalties(points_m, radii_m, parts, views, params), usual, views, params)
-
-
 def learn_usual(
     usual: UsualPenalties,
     penalties: Penalties,

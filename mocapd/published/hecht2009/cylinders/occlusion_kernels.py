@@ -92,12 +92,3 @@ def is_hidden(
         bits >>= 1
         c += 1
     return False
-
-
-@kernel
-def hidden_samples(
-    model: OcclusionModel, others: int, samples: Array, margin: float, out: NDArray[np.bool_]
-) -> None:
-    """`is_hidden` of samples (S,3): x, y [work px], depth [m], all inside of the picture; out (S,)."""
-    for s in range(samples.shape[0]):
-        out[s] = is_hidden(model, others, samples[s, 0], samples[s, 1], samples[s, 2], margin)

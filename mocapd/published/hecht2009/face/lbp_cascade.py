@@ -19,17 +19,6 @@ def frontal_faces() -> CascadeArrays:
     return read_cascade(_FILE)
 
 
-def blind_cascade() -> CascadeArrays:
-    """One that finds no face: heads are then found by their outline alone."""
-    return CascadeArrays(
-        first=np.zeros(2, np.int64),
-        threshold=np.full(1, np.inf, np.float32),
-        rects=np.zeros((0, 4), np.int64),
-        subsets=np.zeros((0, 8), np.uint32),
-        leaves=np.zeros((0, 2), np.float32),
-    )
-
-
 def read_cascade(path: Path) -> CascadeArrays:
     """The cascade in an OpenCV XML file with LBP features of stumps. ValueError: it is something else."""
     root = ElementTree.fromstring(path.read_bytes()).find("cascade")

@@ -122,16 +122,6 @@ def brightness(picture: NDArray[np.uint8], x0: int, y0: int, x1: int, y1: int) -
 
 
 @kernel
-def skin_map(picture: NDArray[np.uint8], odds: Singles, out: NDArray[np.uint8]) -> None:
-    """Fill out (H,W) with 255 where the colour of picture (H,W,3) BGR is rather skin than not; odds (CHROMA^2,)."""
-    h, w, _ = picture.shape
-    for y in range(h):
-        for x in range(w):
-            c = chroma_bin(picture[y, x, 0], picture[y, x, 1], picture[y, x, 2])
-            out[y, x] = 255 if c >= 0 and odds[c] > 0.0 else 0
-
-
-@kernel
 def skin_side(
     picture: NDArray[np.uint8], ellipse: NDArray[np.float64], up: NDArray[np.float64], odds: Singles
 ) -> tuple[float, float]:

@@ -95,14 +95,6 @@ def _chroma_odds(skin: Singles, other: Singles) -> Singles:
     return out
 
 
-def skin_pixels(colours: HeadColours, picture: Bytes) -> Bytes:
-    """255 (h,w) where picture (h,w,3) BGR is more likely the wearer's skin than not; 0 everywhere before learning."""
-    out = np.zeros(picture.shape[:2], np.uint8)
-    if float(colours.skin.sum()) >= _LEAST:
-        kernels.skin_map(picture, colours.skin_odds, out)
-    return out
-
-
 def face_side(
     colours: HeadColours, picture: Bytes, outline: HeadEllipse
 ) -> tuple[float, float] | None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.arrays import CameraArrays, camera_arrays
+from mocapd.body.arrays import CameraArrays
 from mocapd.geometry.camera_model import centre, rays
 from mocapd.published.hecht2009.head.stereo_sweep_kernels import sweep
 from mocapd.types import Bytes, Camera, Floats
@@ -40,11 +40,6 @@ class StereoView:
     camera: Camera
     arrays: CameraArrays
     grey: Bytes
-
-
-def stereo_view(camera: Camera, grey: Bytes) -> StereoView:
-    """A picture of a calibrated camera."""
-    return StereoView(camera, camera_arrays(camera), grey)
 
 
 def view_angle_rad(a: Camera, b: Camera, point_m: Floats) -> float:

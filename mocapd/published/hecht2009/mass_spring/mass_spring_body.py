@@ -1,6 +1,6 @@
 """The flexible body of one shape: masses, springs, limits and cross-sections, ready for the kernels."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -49,8 +49,8 @@ class Softness:
 class MassSpringBody:
     """A flexible body. P = 16 points, S springs.
 
-    rest_m (16,3): the T-pose; mass_kg (16,): the base masses, that of the head infinite; built_m (S,): the lengths that the
-    shape gives, lengths_m (S,): those in force; everybody: all constraints; limbs: those that touch each of LIMBS.
+    rest_m (16,3): the T-pose; mass_kg (16,): the base masses, that of the head infinite; lengths_m (S,): of the
+    springs; everybody: all constraints; limbs: those that touch each of LIMBS.
     """
 
     shape: BodyShape
@@ -59,7 +59,6 @@ class MassSpringBody:
     rest_m: Floats
     mass_kg: Floats
     springs: Springs
-    built_m: Floats
     lengths_m: Floats
     frusta: Frusta
     constraints: PointConstraints
@@ -69,13 +68,6 @@ class MassSpringBody:
     def with_shape(self, shape: BodyShape) -> "MassSpringBody":
         """The same body in another shape, with that one's lengths."""
         return build_body(shape, self.softness)
-
-    def with_lengths(self, lengths_m: Floats) -> "MassSpringBody":
-        """The same body with other lengths (S,) of its springs [m], see `springs.adapted_lengths`."""
-        lengths = np.ascontiguousarray(lengths_m, dtype=float)
-        return replace(
-            self, lengths_m=lengths, constraints=self.constraints._replace(lengths=lengths)
-        )
 
 
 def build_body(shape: BodyShape, softness: Softness | None = None) -> MassSpringBody:
@@ -96,7 +88,7 @@ def build_body(shape: BodyShape, softness: Softness | None = None) -> MassSpring
     everybody = _active(springs, constraints, frozenset(range(N_POINTS)))
     limbs = {name: _active(springs, constraints, frozenset(limb)) for name, limb in LIMBS.items()}
     return MassSpringBody(
-        shape, softness, skeleton, rest, mass, springs, lengths, lengths,
+        shape, softness, skeleton, rest, mass, springs, lengths,
         build_frusta(shape, skeleton, rest), constraints, everybody, limbs,
     )  # fmt: skip
 

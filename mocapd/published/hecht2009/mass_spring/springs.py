@@ -24,8 +24,6 @@ from mocapd.published.hecht2009.mass_spring.body_points import (
 )
 from mocapd.types import Floats, Ints
 
-MOST_ADAPTED = 0.15  # of a built length: proportions of adults of one stature differ by less
-
 
 @dataclass(frozen=True, slots=True)
 class Compliances:
@@ -87,19 +85,3 @@ def build_springs(soft_waist: bool, compliances: Compliances) -> Springs:
     place = {frozenset(pair): k for k, pair in enumerate(ends.tolist())}
     mirror = np.array([place[frozenset(pair)] for pair in MIRROR[ends].tolist()])
     return Springs(ends, np.array([row[2] for row in table]), mirror)
-
-
-def adapted_lengths(
-    lengths_m: Floats, observed_m: Floats, weights: Floats, built_m: Floats
-) -> Floats:
-    """Lengths (S,) moved towards the observed ones by their weights (S,) in 0..1, within MOST_ADAPTED of the built ones.
-
-    A weight is the step size of this call: for a time constant tau use 1 - exp(-dt / tau) times the confidence. A NaN
-    length is not observed.
-    """
-    share = np.clip(np.where(np.isfinite(weights), weights, 0.0), 0.0, 1.0)
-    known = np.isfinite(observed_m)
-    towards = np.where(known, observed_m, lengths_m)
-    moved = lengths_m + share * (towards - lengths_m)
-    adapted: Floats = np.clip(moved, (1 - MOST_ADAPTED) * built_m, (1 + MOST_ADAPTED) * built_m)
-    return adapted

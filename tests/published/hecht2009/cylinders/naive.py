@@ -1,10 +1,17 @@
 """Slow twins of the cylinders' kernels, and a small body to try them on."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from mocapd.geometry.camera_model import project, to_camera
 from mocapd.published.hecht2009.cylinders.limb_params import LimbScoreParams
-from mocapd.published.hecht2009.cylinders.limb_score import LimbView
+from mocapd.published.hecht2009.cylinders.limb_score import (
+    LimbView,
+    UsualPenalties,
+    limb_penalties,
+    log_scores,
+)
 from mocapd.published.hecht2009.edge_kernels import FULL
 from mocapd.types import Camera, Floats
 
@@ -131,3 +138,15 @@ def naive_penalties(
                     total[1] += size * min(sad / params.colour_cap, 1.0)
                     seen[1] += size
     return total / np.maximum(seen, 1e-9), seen / (params.along * np.array([4, 2 * params.across]))
+
+
+def score_limbs(
+    points_m: Floats,
+    radii_m: Floats,
+    parts: tuple[int, int],
+    views: Sequence[LimbView],
+    usual: UsualPenalties,
+    params: LimbScoreParams,
+) -> Floats:
+    """Logarithm (N,) of the likelihoods of N particles; arguments as of `limb_penalties` and `log_scores`."""
+    return log_scores(limb_penalties(points_m, radii_m, parts, views, params), usual, views, params)

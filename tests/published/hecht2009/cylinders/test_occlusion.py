@@ -11,7 +11,7 @@ from mocapd.published.hecht2009.cylinders.occlusion import (
     fill_occlusion,
     part_ends,
 )
-from mocapd.published.hecht2009.cylinders.occlusion_kernels import hidden_samples
+from mocapd.published.hecht2009.cylinders.occlusion_kernels import is_hidden
 from mocapd.published.hecht2009.cylinders.work_camera import work_camera
 from tests.published.hecht2009.cylinders.naive import ENDS_M, RADII_M, WORK_PX, camera, naive_hidden
 
@@ -28,8 +28,9 @@ def test_samples_are_hidden_as_by_brute_force(seed: int, cell_px: float, own: in
     samples = np.column_stack(
         [rng.uniform(100.0, 220.0, 80), rng.uniform(20.0, 220.0, 80), rng.uniform(2.3, 3.1, 80)]
     )
-    got = np.empty(80, np.bool_)
-    hidden_samples(model, ~(1 << own), samples, MARGIN_M, got)
+    got = np.array(
+        [is_hidden(model, ~(1 << own), x, y, depth_m, MARGIN_M) for x, y, depth_m in samples]
+    )
     expected = [naive_hidden(quads, depths, {own}, s[:2], s[2], MARGIN_M) for s in samples]
     assert (got == expected).all()
     assert 0 < np.count_nonzero(got) < 80
@@ -39,11 +40,9 @@ def hand_hidden(hand_m: tuple[float, float, float]) -> bool:
     of = camera()
     model = allocate_occlusion(len(ENDS_M), WORK_PX, 8.0)
     fill_occlusion(model, work_camera(of, WORK_PX), ENDS_M, RADII_M)
-    xy = (project(of, np.array(hand_m)) + 0.5) * 0.5 - 0.5
-    sample = np.array([[*xy, to_camera(of, np.array(hand_m))[2]]])
-    out = np.empty(1, np.bool_)
-    hidden_samples(model, ~(3 << 3), sample, MARGIN_M, out)
-    return bool(out[0])
+    x, y = (project(of, np.array(hand_m)) + 0.5) * 0.5 - 0.5
+    depth_m = to_camera(of, np.array(hand_m))[2]
+    return bool(is_hidden(model, ~(3 << 3), x, y, depth_m, MARGIN_M))
 
 
 def test_a_hand_behind_the_back_is_hidden_and_one_before_the_belly_or_beside_is_not() -> None:
@@ -61,10 +60,7 @@ def test_a_body_before_the_last_ones_place_is_forgotten() -> None:
     work = work_camera(camera(), WORK_PX)
     fill_occlusion(model, work, ENDS_M, RADII_M)
     fill_occlusion(model, work, ENDS_M + [0.0, 0.0, 9.0], RADII_M)  # behind the camera
-    sample = np.array([[160.0, 120.0, 9.0]])
-    out = np.empty(1, np.bool_)
-    hidden_samples(model, -1, sample, MARGIN_M, out)
-    assert not out[0]
+    assert not is_hidden(model, -1, 160.0, 120.0, 9.0, MARGIN_M)
 
 
 def test_parts_run_between_the_points_that_they_name() -> None:

@@ -8,18 +8,15 @@ from hypothesis import strategies as st
 from mocapd.geometry.camera_model import project, to_camera
 from mocapd.published.hecht2009.cylinders.cylinder_projection_kernels import (
     pixel_at,
-    project_limbs,
     project_parts,
 )
 from mocapd.published.hecht2009.cylinders.work_camera import work_camera
 from mocapd.types import Camera, Floats
 from tests.published.hecht2009.cylinders.naive import (
     ENDS_M,
-    LEFT_ARM,
     RADII_M,
     WORK_PX,
     camera,
-    limb_of,
     naive_quad,
 )
 
@@ -37,19 +34,6 @@ def test_corners_are_those_of_the_camera_model(x_m: float) -> None:
     for quad, depth, ends, radii in zip(quads, depths, ENDS_M, RADII_M, strict=True):
         assert quad == pytest.approx(naive_quad(of, ends[0], ends[1], radii), abs=1e-9)
         assert depth == pytest.approx(to_camera(of, ends)[:, 2])
-
-
-def test_limbs_are_projected_as_their_parts() -> None:
-    of = camera(0.4)
-    rng = np.random.default_rng(1)
-    limbs = limb_of(ENDS_M, LEFT_ARM) + rng.normal(0.0, 0.1, (20, 3, 3))
-    radii = RADII_M[list(LEFT_ARM)]
-    quads, depths = np.empty((20, 2, 4, 2)), np.empty((20, 2, 2))
-    project_limbs(limbs, radii, work_camera(of, WORK_PX), quads, depths)
-    for f in range(2):
-        expected = quads_of(of, limbs[:, f : f + 2], np.repeat(radii[f][None], 20, axis=0))
-        assert quads[:, f] == pytest.approx(expected[0])
-        assert depths[:, f] == pytest.approx(expected[1])
 
 
 def test_a_quad_is_as_wide_and_long_as_the_round_part_looks() -> None:

@@ -15,7 +15,6 @@ from mocapd.published.hecht2009.cylinders.limb_score import (
     learn_usual,
     limb_penalties,
     log_scores,
-    score_limbs,
 )
 from mocapd.published.hecht2009.cylinders.occlusion import allocate_occlusion, fill_occlusion
 from mocapd.published.hecht2009.cylinders.work_camera import work_camera
@@ -29,6 +28,7 @@ from tests.published.hecht2009.cylinders.naive import (
     camera,
     limb_of,
     naive_penalties,
+    score_limbs,
 )
 
 PARAMS = LimbScoreParams()

@@ -17,7 +17,7 @@ from mocapd.published.hecht2009.cylinders.limb_params import (
     as_published,
 )
 from mocapd.published.hecht2009.cylinders.limb_particles import start_cloud, step_cloud
-from mocapd.published.hecht2009.cylinders.limb_score import LimbView, UsualPenalties, score_limbs
+from mocapd.published.hecht2009.cylinders.limb_score import LimbView, UsualPenalties
 from mocapd.published.hecht2009.cylinders.occlusion import allocate_occlusion, fill_occlusion
 from mocapd.published.hecht2009.cylinders.part_colours import (
     AppearanceModel,
@@ -31,7 +31,7 @@ from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import load_scenario
 from mocapd.sim.world import World
 from mocapd.types import Bytes, Floats
-from tests.published.hecht2009.cylinders.naive import RADII_M, WORK_PX
+from tests.published.hecht2009.cylinders.naive import RADII_M, WORK_PX, score_limbs
 
 SCORE = LimbScoreParams()
 EDGES_ALONE = replace(SCORE, appearance=False)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mocapd.body.head_proportions import MIDDLE
-from mocapd.published.hecht2009.face.lbp_cascade import blind_cascade, read_cascade
+from mocapd.published.hecht2009.face.lbp_cascade import read_cascade
 from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
 from mocapd.published.hecht2009.head.head_shape import face_of, joint_of, yaw_rotation
 from mocapd.published.hecht2009.head.head_track import (
@@ -26,6 +26,17 @@ from tests.published.hecht2009.head.ball_scene import Ball, camera, narrow_pair,
 STATURE_M = 1.75
 DT_S = 1 / 30
 Scene = Callable[[float], tuple[Ball, ...]]
+
+
+def blind_cascade() -> CascadeArrays:
+    """One that finds no face: heads are then found by their outline alone."""
+    return CascadeArrays(
+        first=np.zeros(2, np.int64),
+        threshold=np.full(1, np.inf, np.float32),
+        rects=np.zeros((0, 4), np.int64),
+        subsets=np.zeros((0, 8), np.uint32),
+        leaves=np.zeros((0, 2), np.float32),
+    )
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,6 @@ from mocapd.body.arrays import camera_arrays
 from mocapd.geometry.camera_model import centre, project, rays
 from mocapd.published.hecht2009.head.stereo_distance import (
     StereoView,
-    stereo_view,
     swept_distance,
     view_angle_rad,
 )
@@ -22,7 +21,7 @@ BETWEEN_M = (0.6, 5.0)
 
 
 def view(of: Camera, *balls: Ball) -> StereoView:
-    return stereo_view(of, grey(of, *balls))
+    return StereoView(of, camera_arrays(of), grey(of, *balls))
 
 
 def grey(of: Camera, *balls: Ball) -> Bytes:
