@@ -20,8 +20,8 @@ import numpy as np
 from lab.bench_outputs import RATE_HZ, STATURE_M, moving_frames
 from mocapd.body.skeleton import standard_skeleton
 from mocapd.clock import NS_PER_S, monotonic_ns
+from mocapd.evaluate.bench.bench_live import free_port
 from mocapd.evaluate.bench.bench_subscriber import Subscriber
-from mocapd.evaluate.bench.free_port import free_port
 from mocapd.evaluate.tables import number, table
 from mocapd.outputs.base import Sink
 from mocapd.outputs.from_skeleton import rest_skeleton

@@ -1,12 +1,12 @@
 """State messages as on the wire: health, cameras, calibration, rest skeleton, facing. The newest one is valid."""
 
-from typing import Annotated
+from functools import cache
+from typing import Annotated, Any, get_type_hints
 
 import msgspec
 from msgspec import Meta
 
 from mocapd.errors import InputError
-from mocapd.outputs.counts import Count, CountingMessage
 from mocapd.outputs.wire import MOST_JOINTS, BoneName, Number, Person, Vector, decode_message
 
 HEALTH = "mocapd.Health.v1"
@@ -14,6 +14,33 @@ CAMERA_STATUS = "mocapd.CameraStatus.v1"
 CALIBRATION = "mocapd.Calibration.v1"
 REST_SKELETON = "mocapd.Skeleton.Rest.v1"
 FACING = "mocapd.Facing.v1"
+
+
+MOST_COUNT = 2**53  # the largest integer that every receiver holds exactly
+
+# msgpack and JSON hold integers up to 64 bits, JavaScript and Godot up to 2^53; Python's have no limit
+_COUNT = Meta(ge=0, le=MOST_COUNT)
+Count = Annotated[int, _COUNT]
+
+
+class CountingMessage(msgspec.Struct, frozen=True):
+    """Base of messages with counters: each field of type `Count` is limited to 0 … MOST_COUNT when the message is
+    made. A received message that exceeds it is malformed."""
+
+    def __post_init__(self) -> None:
+        for name in _counters(type(self)):
+            count = getattr(self, name)
+            if not 0 <= count <= MOST_COUNT:
+                msgspec.structs.force_setattr(self, name, min(max(0, count), MOST_COUNT))
+
+
+@cache
+def _counters(kind: type[msgspec.Struct]) -> tuple[str, ...]:
+    """Names of the fields of type `Count`."""
+    hints: dict[str, Any] = get_type_hints(kind, include_extras=True)
+    return tuple(
+        name for name, hint in hints.items() if _COUNT in getattr(hint, "__metadata__", ())
+    )
 
 
 class OutputHealth(CountingMessage, frozen=True):

@@ -12,7 +12,6 @@ from mocapd.sim.person.figure import Figure, build_figure
 from mocapd.sim.person.figure_kernels import light_vertices, vertex_normals
 from mocapd.sim.person.group import Group, PersonBody, group_of, posed_group, visible_patches
 from mocapd.sim.render_kernels import accumulate, project_vertices, rasterise
-from mocapd.sim.response import noise_table, response_curve
 from mocapd.sim.response_kernels import PersonLayer, Sensor, expose, shade_room
 from mocapd.sim.scenario import CameraSpec, Scenario
 from mocapd.sim.scenery.empty_room import Background, render_background
@@ -25,6 +24,26 @@ from mocapd.types import Bytes, Camera, Floats, Ints, Pose, Singles
 # Drawings per exposure: instants of the open shutter (-1..1) and offsets [px], which also smooth edges
 _DRAWINGS = ((-0.667, -0.167, -0.333), (0.0, 0.333, 0.0), (0.667, -0.167, 0.333))
 _SHADE_STEP = 4  # shadows on the room are looked up at every fourth pixel, both ways
+
+
+_ENTRIES = 1 << 15
+_NOISE = 1 << 19
+
+
+def response_curve(camera: CameraSpec) -> Bytes:
+    """8-bit values for signals 0..2: gamma, a shoulder, and clipping at full scale."""
+    signal = np.linspace(0.0, 2.0, _ENTRIES)
+    s = camera.shoulder
+    # beyond the shoulder the rest of the range is approached exponentially, with equal slope
+    room = max(1.0 - s, 1e-6)
+    bent = np.where(signal > s, 1.0 - room * np.exp(-(signal - s) / room), signal)
+    return np.round(255.0 * np.clip(bent, 0.0, 1.0) ** (1.0 / camera.gamma)).astype(np.uint8)
+
+
+def noise_table(seed: int, camera_index: int) -> Singles:
+    """Normal deviates that every frame of the camera enters at places of its own."""
+    rng = np.random.default_rng([seed, 4, camera_index])
+    return rng.standard_normal(_NOISE, dtype=np.float32)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

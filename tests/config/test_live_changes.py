@@ -1,7 +1,7 @@
 """What a running daemon takes up of a changed configuration, and what it keeps and says so."""
 
+from mocapd.app.daemon.session_change import apply_live_changes
 from mocapd.config.effective import load_config
-from mocapd.config.live_changes import apply_live_changes
 from mocapd.config.sections import Config
 
 

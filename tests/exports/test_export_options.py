@@ -8,8 +8,7 @@ import pytest
 
 from mocapd.body.skeleton import rest_pose
 from mocapd.errors import UsageError
-from mocapd.exports.export_options import ExportOptions, prepared_motion
-from mocapd.exports.feet_on_floor import feet_on_floor
+from mocapd.exports.export_options import ExportOptions, feet_on_floor, prepared_motion
 from mocapd.exports.formats import FORMATS, write_export
 from mocapd.exports.sampled_motion import SampledMotion
 from mocapd.types import Floats

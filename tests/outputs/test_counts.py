@@ -6,8 +6,7 @@ import msgspec
 import pytest
 
 from mocapd.outputs import messages
-from mocapd.outputs.counts import MOST_COUNT
-from mocapd.outputs.messages import CameraStatus, Health, OutputHealth
+from mocapd.outputs.messages import MOST_COUNT, CameraStatus, Health, OutputHealth
 from mocapd.outputs.zenoh.zenoh_state import ZenohState
 from tests.outputs.test_zenoh_sink import CAMERA, HEALTH
 

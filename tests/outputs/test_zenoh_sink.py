@@ -132,7 +132,7 @@ def test_a_program_that_takes_no_frames_is_no_listener() -> None:
 
 
 def test_status_can_be_asked_while_programs_come_and_go() -> None:
-    """The session's admin space, which says who subscribes, stopped the session for good (see zenoh_listeners)."""
+    """The session's admin space, which says who subscribes, stopped the session for good (see `ListenerNames`)."""
     program = (
         "import sys, zenoh, json\n"
         "config = {'mode': 'client', 'connect': {'endpoints': [sys.argv[1]]},"

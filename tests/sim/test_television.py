@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from mocapd.geometry.camera_model import project
-from mocapd.sim.person.on_screen import on_screen
+from mocapd.sim.person.group import on_screen
 from mocapd.sim.person_spec import Screen
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.world import World

@@ -4,7 +4,7 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mocapd.app.daemon.daemon_page import DaemonPage
 from mocapd.app.daemon.heap import give_back
@@ -13,7 +13,7 @@ from mocapd.app.daemon.notifier import Notifier
 from mocapd.app.daemon.unsafe_settings import unsafe_settings
 from mocapd.app.terminal.logs import set_up_logs
 from mocapd.config.effective import Effective
-from mocapd.config.live_changes import apply_live_changes
+from mocapd.config.sections import Config
 from mocapd.control.control_messages import Reloaded
 from mocapd.control.reloads import Reloads
 from mocapd.errors import MocapdError
@@ -25,6 +25,20 @@ _log = logging.getLogger(__name__)
 SAVED = "a calibration was saved"
 ASKED = "reload requested"
 PREPARED = "everything is prepared"
+
+
+# fixed while the process runs: outputs and page are open, and clients find them by name and folder
+_FIXED = ("instance", "cache_dir", "state_dir", "prediction", "web")
+
+
+def apply_live_changes(running: Config, wanted: Config) -> tuple[Config, tuple[str, ...]]:
+    """The wanted configuration with the fixed values of the running one, and the names of changed keys and sections that
+    need a restart."""
+    fixed = {name: getattr(running, name) for name in _FIXED}
+    waiting = [name for name in _FIXED if getattr(wanted, name) != fixed[name]]
+    names = dict.fromkeys((*running.outputs, *wanted.outputs))
+    waiting += [name for name in names if running.outputs.get(name) != wanted.outputs.get(name)]
+    return replace(wanted, **fixed, outputs=running.outputs), tuple(waiting)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -20,7 +20,6 @@ from mocapd.clock import NS_PER_S, monotonic_ns, seconds
 from mocapd.errors import UnavailableError
 from mocapd.evaluate.bench.bench_step import BYTES_PER_MB
 from mocapd.evaluate.bench.bench_subscriber import Heard, Subscriber
-from mocapd.evaluate.bench.free_port import free_port
 from mocapd.outputs.messages import Health
 from mocapd.types import Floats
 
@@ -28,6 +27,13 @@ INSTANCE = "bench"
 FIRST_FRAME_S = 150.0  # timeout of the first frame; the very first start compiles kernels [s]
 LOOK_EVERY_S = 1.0  # sampling interval of memory [s]
 STOP_S = 5.0
+
+
+def free_port(kind: socket.SocketKind) -> int:
+    """A currently free port of 127.0.0.1; SOCK_STREAM for TCP, SOCK_DGRAM for UDP."""
+    with socket.socket(socket.AF_INET, kind) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
 
 
 class Looks(Protocol):

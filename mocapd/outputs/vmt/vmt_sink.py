@@ -1,4 +1,4 @@
-"""Skeleton frames as SteamVR's trackers, by the driver VMT; messages: `vmt_bundle`, coordinates: `steamvr_space`."""
+"""Skeleton frames as SteamVR's trackers, by the driver VMT; messages and coordinates: `vmt_bundle`."""
 
 from collections import deque
 from collections.abc import Mapping
@@ -10,8 +10,7 @@ from mocapd.outputs.confident_trackers import BEGINS_ABOVE, ConfidentTrackers
 from mocapd.outputs.facing import facing_yaw_rad
 from mocapd.outputs.messages import Facing, StateMessage
 from mocapd.outputs.osc.osc_sink import Destination, parse_destination, status_of
-from mocapd.outputs.vmt.steamvr_space import eyes_m, room_position, room_rotation, turn_by
-from mocapd.outputs.vmt.vmt_bundle import VmtBundle
+from mocapd.outputs.vmt.vmt_bundle import VmtBundle, eyes_m, room_position, room_rotation, turn_by
 from mocapd.outputs.wire import Joint, Quaternion, SkeletonFrame, Vector
 from mocapd.outputs.worn_trackers import WornTracker, trackers_of
 

@@ -1,4 +1,4 @@
-"""Skeleton frames as VRChat's OSC trackers over UDP; trackers: `worn_trackers`, coordinates: `unity_space`."""
+"""Skeleton frames as VRChat's OSC trackers over UDP; trackers: `worn_trackers`, coordinates: `tracker_bundle`."""
 
 import logging
 import math
@@ -18,8 +18,12 @@ from mocapd.outputs.quaternions import IDENTITY_XYZW
 from mocapd.outputs.rate_cap import RateCap
 from mocapd.outputs.vrchat import tracker_bundle
 from mocapd.outputs.vrchat.head_alignment import HeadAlignment
-from mocapd.outputs.vrchat.tracker_bundle import TrackerBundle
-from mocapd.outputs.vrchat.unity_space import cos_sin, unity_euler_deg, unity_position
+from mocapd.outputs.vrchat.tracker_bundle import (
+    TrackerBundle,
+    cos_sin,
+    unity_euler_deg,
+    unity_position,
+)
 from mocapd.outputs.vrchat.vrchat_link import KEY, VRChatLink
 from mocapd.outputs.wire import Joint, SkeletonFrame, Vector
 from mocapd.outputs.worn_trackers import BodyPart, WornTracker, trackers_of

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 from mocapd.app.daemon.notifier import Notifier
-from mocapd.app.daemon.progress_watch import ProgressWatch
-from mocapd.app.daemon.supervision import Supervision
+from mocapd.app.daemon.supervision import ProgressWatch, Supervision
 from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.capture.camera_thread.capture_status import CaptureState, CaptureStatus
 from mocapd.config.sections import Config

@@ -10,8 +10,7 @@ import pytest
 from mocapd.app.install import installing, interpreter
 from mocapd.app.install.installing import InstallStep, InstallTarget, install, next_steps, uninstall
 from mocapd.app.install.own_file import Outcome
-from mocapd.app.install.places import InstallPaths, files, of_machine
-from mocapd.app.install.unit_texts import unit_text
+from mocapd.app.install.places import InstallPaths, files, of_machine, unit_text
 from mocapd.errors import CannotCreateError, ConfigError, PermissionDeniedError, UsageError
 from tests.cli.mocapd_process import mocapd_here
 

@@ -8,7 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from mocapd.geometry import rotations
-from mocapd.outputs.vrchat.unity_space import cos_sin, unity_euler_deg, unity_position
+from mocapd.outputs.vrchat.tracker_bundle import cos_sin, unity_euler_deg, unity_position
 from mocapd.types import Floats
 from tests.outputs.receivers.vrchat import MIRROR, unity_rotation
 
