@@ -21,9 +21,8 @@ def _other_side(name: str) -> str:
     return "left" + name[5:] if name.startswith("right") else name
 
 
-OTHER_SIDE = np.array(
-    [INDEX[_other_side(name)] for name in NAMES]
-)  # (J,) of a left joint the right one
+# (J,) of a left joint the right one
+OTHER_SIDE = np.array([INDEX[_other_side(name)] for name in NAMES])
 
 
 @cache

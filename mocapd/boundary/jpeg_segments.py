@@ -12,15 +12,13 @@ from dataclasses import dataclass
 
 from mocapd.errors import MalformedError
 
-MOST_SEGMENTS = (
-    256  # before the picture, and again between its scans; cameras write 10, photographs 60
-)
+# before the picture, and again between its scans; cameras write 10, photographs 60
+MOST_SEGMENTS = 256
 MOST_SCANS = 64  # ordinary progressive files have 10
 # Scans times pixels: below 1 s. A progressive photograph of 12 Mpixel is within.
 MOST_SCANNED_PIXELS = 120_000_000
-_BUFFERED_SCANS = (
-    8  # least count of a picture in several scans, which holds all coefficients in memory
-)
+# least count of a picture in several scans, which holds all coefficients in memory
+_BUFFERED_SCANS = 8
 
 _SOI = b"\xff\xd8"
 _SEQUENTIAL, _PROGRESSIVE = frozenset({0xC0, 0xC1}), 0xC2  # the frame headers that are read

@@ -35,9 +35,8 @@ _MOST_SWELLING, _ALWAYS_BYTES = 500, MOST_RECORD_BYTES
 _BYTES_A_MESSAGE, _ALWAYS_MESSAGES = 8, 20_000
 
 _HEAD = struct.Struct("<BQ")  # opcode, length of what follows
-_MESSAGE = struct.Struct(
-    "<HIQQ"
-)  # channel, sequence, time of log and of publication; then the data
+# channel, sequence, time of log and of publication; then the data
+_MESSAGE = struct.Struct("<HIQQ")
 _LATEST_NS = 2**63 - 1
 # Exceptions of the library's record parsers on malformed input.
 _BAD_RECORD = (McapError, struct.error, UnicodeDecodeError, ValueError, OverflowError, MemoryError)

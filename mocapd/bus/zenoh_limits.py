@@ -15,9 +15,8 @@ MAX_SESSIONS = 64
 # Connections that have said nothing yet hold a file descriptor and one of these places. Zenoh's own
 # 100 places for 10 s are soon taken by a hundred silent connections.
 ACCEPT_PENDING = 512
-ACCEPT_TIMEOUT_MS = (
-    2_000  # a handshake takes some milliseconds, and some tenths of a second by radio
-)
+# a handshake takes some milliseconds, and some tenths of a second by radio
+ACCEPT_TIMEOUT_MS = 2_000
 
 # Closing takes some milliseconds, but 10 s if a single peer does not read.
 CLOSE_S = 0.7

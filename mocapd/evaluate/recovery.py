@@ -10,9 +10,8 @@ from mocapd.session.offline import RecordedTrack
 from mocapd.types import Floats
 
 LIMIT_M = 0.06
-CLEAR_LIMIT_M = (
-    0.10  # after an occlusion of the whole body, where even good tracks have larger errors
-)
+# after an occlusion of the whole body, where even good tracks have larger errors
+CLEAR_LIMIT_M = 0.10
 STEADY_FRAMES = 3
 # An error that rises later than this after the change has another cause, such as a fast throw.
 _BLAMED_FRAMES = 10

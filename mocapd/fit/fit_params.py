@@ -15,9 +15,8 @@ class FitParams:
     iterations: int = 4
     first_radius_px: int = 14  # search radius of the first and the last iteration [work px]
     last_radius_px: int = 7
-    fine_iterations: int = (
-        2  # the last ones, at all work pixels; the others at every second each way
-    )
+    # the last ones, at all work pixels; the others at every second each way
+    fine_iterations: int = 2
     edge_weight: float = 1.0  # weight of an edge in place against a pixel that disagrees, fine
     row_weight: float = 0.06  # inverse variance of a pixel's residual; neighbours are correlated
 
@@ -39,9 +38,8 @@ class FitParams:
     tilt_sd_rad: float = 0.25  # of the hips, with a small baseline
 
     depth_off_m: float = 0.10  # of the drawn from the measured depth: another object
-    depth_around_px: int = (
-        2  # search radius for a drawn pixel of the measured depth: a patch's half [work px]
-    )
+    # search radius for a drawn pixel of the measured depth: a patch's half [work px]
+    depth_around_px: int = 2
     depth_cost: float = 1.0  # of a pixel at another depth [disagreeing pixels]
     # tolerated share of an area at another depth: the outlines of a limb have the depth of the background
     depth_usual: float = 1.6  # factor on the agreeing share of an area
@@ -93,9 +91,8 @@ class LimbSearchParams:
 class LegSearchParams:
     """When the search tries other poses of a leg, and how many."""
 
-    uncertain: float = (
-        0.5  # share of its worse part's pixels confirmed, below which others are tried
-    )
+    # share of its worse part's pixels confirmed, below which others are tried
+    uncertain: float = 0.5
     cloud: int = 48  # samples about the present pose
     library: int = 96  # tries over the range of legs, another part each frame
     fits: int = 2  # the best samples, refined by a fit
@@ -103,8 +100,7 @@ class LegSearchParams:
     empty: float = 0.5  # share of a leg's area before background that denies it
     unusual_px: float = 1.4  # cost of an unusual pose by its squared Mahalanobis distance
     unusual_cost: float = 1.0  # the same in the cost of a fit
-    tail: float = (
-        25.0  # such a distance, above which more counts ever less: legs of a squat have 50 to 200
-    )
+    # such a distance, above which more counts ever less: legs of a squat have 50 to 200
+    tail: float = 25.0
     squats: int = 3  # of so many tries over the range one is of a deep squat
     gain: float = 10.0  # by how much the cost must fall to change over [disagreeing pixels]

@@ -99,9 +99,8 @@ class Fitter:
         )
         evidence = held = np.zeros((n_pose, n_pose))
         coarsely = [coarse(view) for view in views]
-        shape_information = np.ascontiguousarray(
-            prediction.information
-        )  # a slice would be another kernel
+        # a slice would be another kernel
+        shape_information = np.ascontiguousarray(prediction.information)
         for k in range(iterations):
             is_fine, body = k >= iterations - fine, self.shaper(state.factors)
             # proportions are a matter of a few pixels

@@ -18,9 +18,8 @@ Probe = Callable[[str], None]  # called with the name of a stage when it ends
 class LostReason(StrEnum):
     """Each reason comes with a description and a remedy for the user."""
 
-    UNRECOGNISED = (
-        "unrecognised"  # a person-sized region moved for seconds and failed the person checks
-    )
+    # a person-sized region moved for seconds and failed the person checks
+    UNRECOGNISED = "unrecognised"
 
     @property
     def what(self) -> str:

@@ -45,9 +45,8 @@ class BodyTrackerParams:
     work_width_px: int = 320  # approximate width of the downscaled pictures
     damping: float = 0.6  # share of its velocity that a prediction keeps
     arrive_s: float = 0.15  # a profile with a shirt publishes clothes-only tracks no younger: early fits are the worst
-    overrule_s: float = (
-        2.0  # a shirt tracked elsewhere for this long replaces the body of the clothes
-    )
+    # a shirt tracked elsewhere for this long replaces the body of the clothes
+    overrule_s: float = 2.0
     legs_last_s: float = 0.5  # unobserved legs are published for this long
 
 

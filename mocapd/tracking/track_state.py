@@ -11,9 +11,8 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
-NEW_BODY_PRIOR_S = (
-    0.1  # the prior of a body from another cue is as loose as a prediction over this time
-)
+# the prior of a body from another cue is as loose as a prediction over this time
+NEW_BODY_PRIOR_S = 0.1
 
 
 @dataclass(frozen=True, slots=True, eq=False)

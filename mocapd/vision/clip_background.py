@@ -23,9 +23,8 @@ _GAP = np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (31, 31)), np.uin
 class ClipBackgroundParams:
     """When a pixel counts as still, and how often it must be."""
 
-    apart_s: float = (
-        0.13  # between pictures that are compared: in less time a person moves less than a pixel
-    )
+    # between pictures that are compared: in less time a person moves less than a pixel
+    apart_s: float = 0.13
     tolerance: float = 10.0  # of a channel, 0..255
     noises: float = 4.0  # or as often the difference that half of the picture has
     moving_share: float = 0.12  # of the pixels nearby that may differ: noise does

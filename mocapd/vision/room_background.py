@@ -22,9 +22,8 @@ from mocapd.vision.ghost_removal import GhostParams, find_ghosts
 _PHASES = 4  # the background changes slowly: each update takes every fourth row
 _SPECK = np.ones((2, 2), np.uint8)  # smaller pieces are noise
 _STANDS = stands(np.arange(256, dtype=np.uint8)).astype(np.uint8)  # of each label
-_GAP = np.ones(
-    (5, 5), np.uint8
-)  # narrower gaps are parts of the body in the colour of the background
+# narrower gaps are parts of the body in the colour of the background
+_GAP = np.ones((5, 5), np.uint8)
 
 
 _LEAST_AGE = 6  # updates after which a background pixel is valid

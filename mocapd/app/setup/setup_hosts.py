@@ -110,9 +110,8 @@ def demo_host(config: "Config", step: "StepName | None", following: str) -> OwnH
             BoardKind.CHARUCO, shown.columns, shown.rows, shown.square_m, shown.marker_m,
             shown.dictionary,
         )  # fmt: skip
-        draft = Draft(  # simulated, so the user cannot measure them
-            board=board, stature_m=demo.stature_m, has_shirt=before.has_shirt
-        )
+        # simulated, so the user cannot measure them
+        draft = Draft(board=board, stature_m=demo.stature_m, has_shirt=before.has_shirt)
     return OwnHost(
         replace(draft, cameras=cameras),
         settings_of(config, following),

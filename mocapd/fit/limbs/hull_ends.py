@@ -39,9 +39,8 @@ class HullEndParams:
     nearest: float = 0.35  # nearest, likewise
     end_m: float = 0.08  # depth of an end
     hand_m: float = 0.08  # from the wrist to the middle of an end
-    away_m: float = (
-        0.10  # of the wrist there from the present one: a nearer end is in the fit's reach
-    )
+    # of the wrist there from the present one: a nearer end is in the fit's reach
+    away_m: float = 0.10
 
 
 @dataclass(frozen=True, slots=True, eq=False)

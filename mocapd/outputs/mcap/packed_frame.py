@@ -33,9 +33,8 @@ FARTHEST_M = 2.0**23 * GRID_M  # 128 m from the origin: 24 bits
 _SD_STEPS_PER_M = 10_000.0
 _SD_UNKNOWN = 65535
 _TURN_STEPS = 32767.0 * np.sqrt(2.0)  # the three smaller components are below sqrt(1/2)
-_OTHERS = np.array(
-    [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]
-)  # of each component, the three others
+# of each component, the three others
+_OTHERS = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
 
 
 class PackedFrame(msgspec.Struct, frozen=True):

@@ -43,9 +43,8 @@ class PosePredictor:
         self._newest: SkeletonFrame | None = None
         self._steps: list[_Step] = []  # newest first
         self._is_held = False  # the newest frame repeats the pose before it, as no camera delivered
-        self._offsets_m: dict[str, Vector] | None = (
-            None  # of the newest frame: of each bone, in the parent's axes
-        )
+        # of the newest frame: of each bone, in the parent's axes
+        self._offsets_m: dict[str, Vector] | None = None
 
     def take(self, frame: SkeletonFrame) -> None:
         """Add the newest frame. A frame that is not newer, of another daemon, `lost`, after a gap or after a held pose

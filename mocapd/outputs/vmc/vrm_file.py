@@ -25,9 +25,8 @@ _MOST_NODES = 30_000
 _MOST_OBJECTS, _MOST_COMMAS = 400_000, 4_000_000
 FIX = "export the avatar as VRM 0.x or 1.0, for example with UniVRM or the VRM add-on of Blender"
 
-_HEADER = struct.Struct(
-    "<4sIIII"
-)  # magic, version, total length; length and kind of the first chunk
+# magic, version, total length; length and kind of the first chunk
+_HEADER = struct.Struct("<4sIIII")
 _MAGIC, _JSON = b"glTF", 0x4E4F534A
 _VERSION = 2
 

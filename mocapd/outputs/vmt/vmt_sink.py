@@ -51,9 +51,8 @@ class VmtSink:
         numbers = [tracker.number for tracker in TRACKERS]
         self._bundle = VmtBundle(numbers, params.anchor == "headset")
         self._turn = turn_by(0.0)
-        self._asked: deque[None] = deque(
-            maxlen=1
-        )  # a pending recenter request; deque's calls are atomic
+        # a pending recenter request; deque's calls are atomic
+        self._asked: deque[None] = deque(maxlen=1)
         self._destination: Destination | None = None
         self._is_shown = False  # whether any tracker is switched on in SteamVR
 

@@ -21,9 +21,8 @@ class HeadAlignment:
 
     def __init__(self, forward_rad: float = 0.0) -> None:
         self.forward_rad = self.turn_rad = forward_rad
-        self._asked: deque[None] = deque(
-            maxlen=1
-        )  # a pending recenter request; deque's calls are atomic
+        # a pending recenter request; deque's calls are atomic
+        self._asked: deque[None] = deque(maxlen=1)
         self._sent_ns: int | None = None
 
     def ask(self) -> None:

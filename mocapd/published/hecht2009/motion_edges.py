@@ -21,9 +21,8 @@ class MotionEdgeParams:
 
     # Two frames of a webcam differ by 2 to 3 from noise alone, averaged over 2x2 pixels: five times that.
     least_difference: int = 14
-    least_gradient: int = (
-        36  # of Sobel's two derivatives together: a step of 9, dark trousers on a dark floor
-    )
+    # of Sobel's two derivatives together: a step of 9, dark trousers on a dark floor
+    least_gradient: int = 36
     still_share: float = 0.6  # of an edge that does not move, against one that does
     edge_blur_px: float = 2.0  # how far off an outline may be drawn and still say something
     # a straight edge's peak is some 0.65 of what is marked after that blur: back to one and beyond

@@ -51,6 +51,5 @@ class Params:
     # background
     beside_px: int = 15  # about the body nothing is learned as background [work px]
     uncovered_turns: int = 10  # from one look for what was uncovered to the next
-    absorb_turns: int = (
-        13  # one look of so many also learns the foreground while no body is tracked
-    )
+    # one look of so many also learns the foreground while no body is tracked
+    absorb_turns: int = 13

@@ -11,9 +11,8 @@ from mocapd.vision.room_background import BackgroundParams
 class RootParams:
     """The root is given in the paper. Here it is the trunk's, searched for like a limb."""
 
-    sd_m: float = (
-        0.6  # of the top layer's noise per second of the time between frames: a third of 1.8 m/s
-    )
+    # of the top layer's noise per second of the time between frames: a third of 1.8 m/s
+    sd_m: float = 0.6
     sd_rad: float = 1.6  # likewise
     yaws: int = 24  # directions that are tried at the start
     raised_rad: tuple[float, ...] = (0.0, 0.6, 1.2, 1.45)  # arms below the T-pose that are tried
@@ -49,11 +48,9 @@ class Params:
 
     # background
     beside_px: int = 12  # about the body nothing is learned as background [work px]
-    close_px: int = (
-        1  # distance from an adopted body beyond which the picture is background [work px]
-    )
+    # distance from an adopted body beyond which the picture is background [work px]
+    close_px: int = 1
     least_contrast: float = 1.3  # outline contrast of an adopted body, which hides its background
     uncovered_looks: int = 10  # from one search for uncovered background to the next
-    absorb_looks: int = (
-        13  # one look of so many also learns the foreground while no person is tracked
-    )
+    # one look of so many also learns the foreground while no person is tracked
+    absorb_looks: int = 13

@@ -32,9 +32,8 @@ class ReachingParams:
     ends: HullEndParams = field(default_factory=HullEndParams)
     iterations: int = 4
     gain: float = 20.0  # by how much the cost must fall [disagreeing pixels]; with 5, arms also reached to moving shadows
-    farther: float = (
-        5.0  # how much more, for an arm that is farther away [disagreeing pixels/rad^2]
-    )
+    # how much more, for an arm that is farther away [disagreeing pixels/rad^2]
+    farther: float = 5.0
     pause_ticks: int = 5  # after a try that failed
 
 

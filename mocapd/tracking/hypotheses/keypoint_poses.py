@@ -35,9 +35,8 @@ class KeypointPoseParams:
     fit_iterations: int = 4  # of a fit to the pictures from there
     loose_s: float = 0.3  # the prior is as weak as a prediction over this time
     gain: float = 5.0  # cost decrease needed to accept it [disagreeing pixels]
-    farther: float = (
-        5.0  # further decrease needed for limbs that are farther away [disagreeing pixels/rad^2]
-    )
+    # further decrease needed for limbs that are farther away [disagreeing pixels/rad^2]
+    farther: float = 5.0
 
 
 def keypoint_starts(

@@ -14,9 +14,8 @@ from mocapd.published.hecht2009.cylinders.work_camera import WorkCamera
 Array = NDArray[np.float64]
 
 NEAREST_M = 0.1  # depth of what is drawn at all
-_ALONG_RAY = (
-    1e-6  # sine of the angle between the rays to both ends, below which the axis has no direction
-)
+# sine of the angle between the rays to both ends, below which the axis has no direction
+_ALONG_RAY = 1e-6
 
 
 @kernel(inline="always")

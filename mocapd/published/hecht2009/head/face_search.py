@@ -41,9 +41,8 @@ _OLD_S = 0.3  # before a picture counts as past
 _SMALL = 4  # reduction factor of stored pictures
 _AROUND = 1.6  # of the box's side: head and hair
 _STILL = 0.012  # loss of correlation of a place where nothing but noise changes
-_SWAPPED_LOOKS = (
-    3  # faces that fit only crosswise, for each that fits, before the cameras count as swapped
-)
+# faces that fit only crosswise, for each that fits, before the cameras count as swapped
+_SWAPPED_LOOKS = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)

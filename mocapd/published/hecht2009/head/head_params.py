@@ -10,9 +10,8 @@ class HeadParams:
     # the filter
     particles: int = 100  # [Hecht 2009, section IV.A]
     measured_share: float = 0.3  # of the particles, drawn where the measurements are
-    push_sd_m_s2: float = (
-        8.0  # spread of a head's acceleration; the hardest in recorded motion is 10 to 20
-    )
+    # spread of a head's acceleration; the hardest in recorded motion is 10 to 20
+    push_sd_m_s2: float = 8.0
     jitter_sd_m: float = 0.006  # over 1/30 s, growing with the square root of time
     colour_weight: float = 6.0  # logarithm of a likelihood, by the difference of two odds -1..1
     edge_weight: float = 0.5  # of a full outline, against colours that differ by one
@@ -24,9 +23,8 @@ class HeadParams:
 
     # finding
     nearest_m: float = 0.5
-    farthest_m: float = (
-        5.5  # a face there is 17 px wide for a webcam, less than the detector's window
-    )
+    # a face there is 17 px wide for a webcam, less than the detector's window
+    farthest_m: float = 5.5
     least_windows: int = 3  # of a face that is believed
     least_looks: int = 2  # detections
     outline_looks: int = 6  # with a head outline before the background and no detected face

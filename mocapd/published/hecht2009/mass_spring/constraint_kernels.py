@@ -20,9 +20,8 @@ _AFTER = (1, 2, 0, 1)  # the axis after each, and the one after that
 _SHOULDERS, _WAIST, _HIPS = (2, 9), (5, 12), (6, 13)
 _BELOW_HIPS_M = 0.06  # the trunk's cylinder ends there
 _LEAST_LEVER = 0.2
-_BELOW_SHOULDERS = (
-    0.15  # and by that share of the upper trunk under the shoulders, where the arms begin
-)
+# and by that share of the upper trunk under the shoulders, where the arms begin
+_BELOW_SHOULDERS = 0.15
 
 
 @kernel(error_model="numpy")

@@ -29,9 +29,8 @@ from mocapd.vision.foreground_kernels import SHADOW
 
 _UNCOUNTED = 255
 _CORE = np.ones((3, 3), np.uint8)  # a drawn region's inside: its edge may be off by a pixel
-_BESIDE = np.ones(
-    (7, 7), np.uint8
-)  # what is farther from the drawn body than half of this is not the body
+# what is farther from the drawn body than half of this is not the body
+_BESIDE = np.ones((7, 7), np.uint8)
 
 
 @dataclass(frozen=True, slots=True)

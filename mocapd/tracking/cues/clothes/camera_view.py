@@ -17,9 +17,8 @@ from mocapd.vision.ghost_removal import brightness_edges
 from mocapd.vision.heatmaps.person_crop import PersonCrop
 from mocapd.vision.room_background import RoomBackground
 
-_OUTLINE_OFFSET = np.ones(
-    (13, 13), np.uint8
-)  # half of it: distance of the pixels that are compared with the outline's
+# half of it: distance of the pixels that are compared with the outline's
+_OUTLINE_OFFSET = np.ones((13, 13), np.uint8)
 _OUTLINE_WIDTH = np.ones((3, 3), np.uint8)
 _REACH_M = 1.5  # shadows of a lamp at the ceiling are shorter than that; those of low lamps fall on walls, too
 _FAR_M = 1e3
@@ -38,17 +37,15 @@ class CameraView:
         self.foreground = np.zeros((h, w), np.uint8)
         self.body = np.zeros((h, w), np.uint8)  # the body with a margin, or a possible person
         self.drawn = np.zeros((h, w), np.uint8)  # the tracked body
-        self.person_odds = np.zeros(
-            (h, w), np.float32
-        )  # log-odds of the network; 0 outside its crop
+        # log-odds of the network; 0 outside its crop
+        self.person_odds = np.zeros((h, w), np.float32)
         self._has_person_odds = False
         self.near: Roi | None = None  # the region about it
         self.is_covered = False  # about the body, by somebody close to the lens
         self.background = RoomBackground(h, w, params.background)
         self.appearance = Appearance(params.appearance)
-        self.may_hold_body = (
-            False  # the background, if learned from a recording with a person in it
-        )
+        # the background, if learned from a recording with a person in it
+        self.may_hold_body = False
         self.body_margin, self.close_margin = (
             np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
         )

@@ -49,9 +49,8 @@ class StartParams:
     # of how far the network spreads head and neck over their maps, in the camera where that is smallest: of people in
     # recordings up to 0.045, in a real video up to 0.054, of moved chairs, plants and cupboards from 0.066
     head_spread_m: float = 0.06
-    farther_per_m: float = (
-        0.08  # of such agreement, that a person one metre farther away must have more
-    )
+    # of such agreement, that a person one metre farther away must have more
+    farther_per_m: float = 0.08
     elsewhere_per_m: float = 0.3  # likewise, away from where somebody was tracked a moment ago
     people: int = 2  # candidates that are fitted; the best one is taken
     # between the facing of fit and keypoints, above which the body is turned and fitted with keypoints, too, where silhouette
@@ -61,13 +60,11 @@ class StartParams:
     turned_less: float = 0.15
     longest_s: float = 0.5  # of a search in one frame set, before it continues in the next
     walked_m: float = 1.0  # by the person during the search, at most
-    walks_m_s: float = (
-        1.5  # since the person was tracked last: who is farther away is somebody else
-    )
+    # since the person was tracked last: who is farther away is somebody else
+    walks_m_s: float = 1.5
     pause_s: float = 0.2  # between attempts that failed
-    most_rest_s: float = (
-        2.0  # a slower piece is followed by a pause as long as itself, at most this
-    )
+    # a slower piece is followed by a pause as long as itself, at most this
+    most_rest_s: float = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,9 +93,8 @@ class KeypointStartParams:
 
     least_height_px: int = 16  # of a blob: a lying person is low [work px]
     step_m: float = 0.1  # between the distances that are tried
-    bottom_weight: float = (
-        0.15  # of the error of a blob's lower edge, relative to that of its centre
-    )
+    # of the error of a blob's lower edge, relative to that of its centre
+    bottom_weight: float = 0.15
     middle_sd_m: float = 0.5  # of the first guess of the hips' place
     looks: int = 2  # passes of the network, the second about the pose of the first
     iterations: int = 6  # of the fit to the keypoints alone
@@ -106,12 +102,10 @@ class KeypointStartParams:
     shadows_more: float = 0.08  # with what may be shadow: it lies on the floor before the feet, and draws the body there
     # see KeypointCandidate
     spread_m: float = 0.09  # of people up to 0.07, of chairs from 0.11
-    hopeless_m: float = (
-        0.15  # the same, above which nothing is fitted: the first crop may be off-centre
-    )
-    off_sds2: float = (
-        1.3  # of people up to 1.0; of lying people, which the network has not learned, to 4
-    )
+    # the same, above which nothing is fitted: the first crop may be off-centre
+    hopeless_m: float = 0.15
+    # of people up to 1.0; of lying people, which the network has not learned, to 4
+    off_sds2: float = 1.3
     apart_m: float = 0.3  # of people up to 0.25, with adjacent cameras; of a bookshelf from 0.4
     least_joints: int = 10  # of 15, detected inside each picture
     lowest_m: tuple[float, float] = (-0.15, 0.3)  # the lowest joint, above the floor
@@ -125,9 +119,8 @@ class MotionMonitorParams:
     least_px: int = 500  # of a camera's foreground [work px]
     most_share: float = 0.6  # of the picture: more is another light
     moved_px: int = 40  # that changed between background and foreground since the last search
-    moved_share: float = (
-        0.03  # the same, of the foreground: the edge of a moved chair flickers less
-    )
+    # the same, of the foreground: the edge of a moved chair flickers less
+    moved_share: float = 0.03
     cameras: int = 2  # that must show it
     lasts_s: float = 2.0  # of such motion: by then a person entering the room is found
     rest_s: float = 1.5  # without motion, that ends it
@@ -170,9 +163,8 @@ class ClothesParams:
     beside_px: int = 15  # about the body, that the background does not learn
     close_px: int = 3  # the same of pixels that have no background yet
     uncovered_s: float = 10 / 30  # between two searches for ghosts
-    absorb_s: float = (
-        13 / 30
-    )  # interval at which the background learns the foreground, too, while no person is tracked
+    # interval at which the background learns the foreground, too, while no person is tracked
+    absorb_s: float = 13 / 30
     soft: float = 60.0 / 255.0  # weight of a rendered pixel in the foreground of another region
 
     # motion from frame to frame
@@ -186,9 +178,8 @@ class ClothesParams:
         0.45  # share of rendered and classified pixels that agree, for the pose to be accepted
     )
     least_body_px: int = 300  # confirmed work px, all cameras together
-    least_contrast: float = (
-        1.2  # `outline_contrast` of a body from another tracker, to start from it
-    )
+    # `outline_contrast` of a body from another tracker, to start from it
+    least_contrast: float = 1.2
     learn_explained: float = 0.45  # of a frame set from which colours are learned
     alike: float = 0.55  # overlap of two regions' colours above which they are merged
 

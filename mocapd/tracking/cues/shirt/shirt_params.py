@@ -41,14 +41,12 @@ class ShirtParams:
     accept_match: float = 0.58  # the same, to accept a new pose
     accept_colours: int = 5  # colours that must be confirmed to accept a new pose
     min_shirt_px: int = 120  # confirmed work px, all cameras together
-    uncertain_match: float = (
-        0.6  # a lower match starts a search of all pictures while tracking goes on
-    )
+    # a lower match starts a search of all pictures while tracking goes on
+    uncertain_match: float = 0.6
     uncertain_pause_s: float = 0.4  # between such searches
     uncertain_gain: float = 0.05  # by which the match must be better to replace the track
     search_pause_s: float = 0.1  # between attempts that failed, while no person is tracked
     covered_pause_s: float = 0.2  # between searches on a body that clothes place
-    near_m: float = (
-        0.3  # trunks nearer than this are one body: errors of cloth, shape and lag stay below it
-    )
+    # trunks nearer than this are one body: errors of cloth, shape and lag stay below it
+    near_m: float = 0.3
     neighbours: int = 6  # of the pose database, per camera
