@@ -52,16 +52,6 @@ class FitParams:
 
 
 @dataclass(frozen=True, slots=True)
-class MotionPriorParams:
-    """Motion of a wearer between nominal frames: a constant, and a multiple of the last step."""
-
-    calm_m: float = 0.003
-    calm_rad: float = 0.01
-    calm_gain: float = 2.0
-    hidden_sd_rad: float = 0.06  # of an unconfirmed arm
-
-
-@dataclass(frozen=True, slots=True)
 class LimbSearchParams:
     """When the search tries other poses of an arm, and how many."""
 

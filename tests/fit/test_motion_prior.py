@@ -7,8 +7,7 @@ import pytest
 
 from mocapd.body.pose_space import SIDES
 from mocapd.body.skeleton import INDEX
-from mocapd.fit.fit_params import MotionPriorParams
-from mocapd.fit.priors.motion_prior import predicted_information
+from mocapd.fit.priors.motion_prior import _HIDDEN_SD_RAD, predicted_information
 from mocapd.fit.priors.pose_prior import load_arm_motion
 from mocapd.geometry import rotations
 from mocapd.types import Floats
@@ -17,14 +16,13 @@ from tests.fit.synthetic import MODEL, fitter, standing, views_of
 N = MODEL.n_pose
 ARM = {side: MODEL.space.columns(f"{side}_arm") for side in SIDES}
 USUAL = fitter(1).prediction_sd
-PARAMS = MotionPriorParams()
 
 
 def information(
     covariance: Floats, step: Floats, left: float = 1.0, right: float = 1.0, frames: float = 1.0
 ) -> Floats:
     arms = [(ARM["left"], left), (ARM["right"], right)]
-    return predicted_information(covariance, step, frames, USUAL, arms, PARAMS)
+    return predicted_information(covariance, step, frames, USUAL, arms)
 
 
 def spread(of: Floats) -> Floats:
@@ -64,7 +62,7 @@ def test_an_arm_that_no_picture_confirms_is_held_alike_however_it_moved() -> Non
         spread(information(1e-8 * np.eye(N), step, left=confirmed)) for confirmed in (1.0, 0.0)
     )
     assert (hidden[ARM["left"]] < seen[ARM["left"]]).all()
-    np.testing.assert_allclose(hidden[ARM["left"]], PARAMS.hidden_sd_rad, rtol=0.2)
+    np.testing.assert_allclose(hidden[ARM["left"]], _HIDDEN_SD_RAD, rtol=0.2)
     np.testing.assert_allclose(hidden[ARM["right"]], seen[ARM["right"]])
 
 

@@ -10,7 +10,7 @@ from mocapd.clock import nanoseconds
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import initial_information
 from mocapd.fit.solver import Fitter
-from mocapd.fit.terms.floor_term import PlantedParams, PlantedTerm
+from mocapd.fit.terms.floor_term import PlantedTerm
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.tracking.planted_feet import PlantedFeet, PlantedFeetParams
@@ -93,7 +93,7 @@ def test_a_planted_foot_holds_the_leg_but_not_against_what_is_far_away() -> None
 
     def off_after_m(away_m: float) -> float:
         place_m = BODY.rest_m[[ankle]][:, [0, 2]] + (0.0, away_m)
-        term = PlantedTerm(BODY, np.array([ankle]), place_m, PlantedParams())
+        term = PlantedTerm(BODY, np.array([ankle]), place_m)
         joints_m, _ = fitter.joints(fitter.fit(body, (), 1 / 30, 4, terms=(term,)).state)
         return float(np.linalg.norm(joints_m[ankle][[0, 2]] - place_m))
 

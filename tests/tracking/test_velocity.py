@@ -9,7 +9,7 @@ from mocapd.body.model import build_model
 from mocapd.body.pose_space import full_body
 from mocapd.fit.motion_state import initial_information
 from mocapd.tracking.track_state import BodyShapeEstimate, t_pose_state
-from mocapd.tracking.velocity import VelocityParams, velocity_between
+from mocapd.tracking.velocity import velocity_between
 
 pytestmark = pytest.mark.kernels
 BODY = build_model(1.75, full_body())
@@ -21,9 +21,7 @@ def left_after_a_fifth_of_a_second(hz: int) -> float:
     state = t_pose_state(BODY, BODY.rest_m[0].copy(), wearer)
     state = replace(state, velocity=np.ones(BODY.n_pose))
     for _ in range(hz // 5):
-        velocity = velocity_between(
-            BODY, state, state, {"left": 0.0, "right": 0.0}, 1 / hz, (), VelocityParams()
-        )
+        velocity = velocity_between(BODY, state, state, {"left": 0.0, "right": 0.0}, 1 / hz, ())
         state = replace(state, velocity=velocity)
     return float(state.velocity[ARM].max())
 

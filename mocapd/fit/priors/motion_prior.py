@@ -9,11 +9,17 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from mocapd.fit.fit_params import TICK_S, MotionPriorParams
+from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.positive_inverse import positive_inverse
 from mocapd.fit.solver import Fitter
 from mocapd.types import Floats
+
+# motion of a wearer between nominal frames: a constant, and a multiple of the last step
+_CALM_M = 0.003
+_CALM_RAD = 0.01
+_CALM_GAIN = 2.0
+_HIDDEN_SD_RAD = 0.06  # of an unconfirmed arm
 
 
 def predicted_information(
@@ -22,7 +28,6 @@ def predicted_information(
     frames: float,
     usual_sd: Floats,
     limbs: Sequence[tuple[slice, float]],
-    params: MotionPriorParams,
 ) -> Floats:
     """Information (P,P) of the prediction, from the covariance (P,P) of the last fit.
 
@@ -30,14 +35,13 @@ def predicted_information(
     usual_sd (P,): what holds any pose at least; limbs: the parameters of each, and how well it was confirmed, 0..1.
     """
     length = np.linalg.norm(last_step.reshape(-1, 3), axis=1)
-    sd = params.calm_gain * length
-    sd[0] += params.calm_m
-    sd[1:] += params.calm_rad
+    sd = _CALM_GAIN * length
+    sd[0] += _CALM_M
+    sd[1:] += _CALM_RAD
     moved_sd = np.minimum(np.repeat(sd, 3), usual_sd)
     for columns, confirmed in limbs:
         if confirmed < 1.0:
-            least = params.hidden_sd_rad
-            moved_sd[columns] = least + confirmed * (moved_sd[columns] - least)
+            moved_sd[columns] = _HIDDEN_SD_RAD + confirmed * (moved_sd[columns] - _HIDDEN_SD_RAD)
     spread = covariance.copy()
     spread[np.diag_indices(len(spread))] += moved_sd**2 * max(frames, 0.5)
     information = positive_inverse(spread)
@@ -52,7 +56,6 @@ def prediction_prior(
     dt_s: float,
     confirmed_arms: Mapping[str, float],
     sure_arm: float,
-    params: MotionPriorParams,
 ) -> Floats:
     """Information (n_pose,n_pose) of a pose predicted dt_s after the last fit, with velocity (n_pose,) per second.
 
@@ -64,5 +67,5 @@ def prediction_prior(
         for side, share in confirmed_arms.items()
     ]
     return predicted_information(
-        last.covariance, velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd, arms, params
+        last.covariance, velocity * dt_s, dt_s / TICK_S, fitter.prediction_sd, arms
     )

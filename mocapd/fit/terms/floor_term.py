@@ -16,6 +16,10 @@ from mocapd.fit.terms.point_rows_kernels import hold_on_floor, stand_on_floor
 from mocapd.types import Floats, Ints
 
 _TOES = [INDEX[side + "Toes"] for side in SIDES]
+# of a foot that stands
+_ANKLE_SD_M = 0.004  # pixels by the hundred pull at it
+_TOES_SD_M = 0.02  # early estimates of the foot's direction err
+_ROBUST_M = 0.03  # this far away from its place a joint is held by a quarter
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,32 +52,20 @@ class FloorTerm:
         return cost
 
 
-@dataclass(frozen=True, slots=True)
-class PlantedParams:
-    """How firmly a foot stands whose ankle and toes are held where they have been for a while."""
-
-    ankle_sd_m: float = 0.004  # pixels by the hundred pull at it
-    toes_sd_m: float = 0.02  # early estimates of the foot's direction err
-    robust_m: float = 0.03  # this far away from its place a joint is held by a quarter
-
-
 class PlantedTerm:
-    """Joints (F,) of feet that stand, with their places (F,2) along x and z [m, world], a `Term`."""
+    """Joints (F,) of feet that stand, held at their places (F,2) along x and z [m, world], a `Term`."""
 
     is_measured = False
 
-    def __init__(
-        self, model: BodyModel, joints: Ints, places_m: Floats, params: PlantedParams
-    ) -> None:
-        self._model, self._joints, self._params = model, joints, params
+    def __init__(self, model: BodyModel, joints: Ints, places_m: Floats) -> None:
+        self._model, self._joints = model, joints
         self._places_m = np.ascontiguousarray(places_m)
-        sd_m = np.where(np.isin(joints, _TOES), self._params.toes_sd_m, self._params.ankle_sd_m)
+        sd_m = np.where(np.isin(joints, _TOES), _TOES_SD_M, _ANKLE_SD_M)
         self._information = 1.0 / sd_m**2
 
     def add(self, posed: PosedJoints, _: Shaped, H: Floats, b: Floats, /) -> float:
         """See `Term`."""
-        m, p = self._model, self._params
         cost: float = hold_on_floor(
-            self._joints, self._places_m, self._information, p.robust_m, plain(m.articulation), plain(posed), H, b
+            self._joints, self._places_m, self._information, _ROBUST_M, plain(self._model.articulation), plain(posed), H, b,
         )  # fmt: skip
         return cost

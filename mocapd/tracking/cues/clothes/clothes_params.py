@@ -2,16 +2,15 @@
 
 from dataclasses import dataclass, field
 
-from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams, MotionPriorParams
+from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
 from mocapd.fit.stereo_depth import StereoDepthParams
-from mocapd.fit.terms.floor_term import FloorParams, PlantedParams
+from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.fit.terms.joint_term import JointTermParams
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
 from mocapd.tracking.hypotheses.hull_poses import ReachingParams
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoseParams
 from mocapd.tracking.planted_feet import PlantedFeetParams
-from mocapd.tracking.velocity import VelocityParams
 from mocapd.vision.room_background import BackgroundParams
 
 
@@ -131,7 +130,6 @@ class ClothesParams:
     """Parameters of the clothes cue."""
 
     fit: FitParams = field(default_factory=lambda: FitParams(iterations=6))
-    motion: MotionPriorParams = field(default_factory=MotionPriorParams)
     # learned colours confirm less than the shirt's; hands belong to the forearm's region
     limbs: LimbSearchParams = field(
         default_factory=lambda: LimbSearchParams(
@@ -146,7 +144,6 @@ class ClothesParams:
     keypoint_start: KeypointStartParams = field(default_factory=KeypointStartParams)
     motion_monitor: MotionMonitorParams = field(default_factory=MotionMonitorParams)
     floor: FloorParams = field(default_factory=FloorParams)
-    planted: PlantedParams = field(default_factory=PlantedParams)
     feet: PlantedFeetParams = field(default_factory=PlantedFeetParams)
     depths: StereoDepthParams = field(default_factory=StereoDepthParams)
     joints: KeypointDetectionParams = field(default_factory=KeypointDetectionParams)
@@ -171,7 +168,6 @@ class ClothesParams:
     sure_to_hand: float = (
         0.6  # share of an arm and of its forearm confirmed, from which on it is where views cross
     )
-    velocity: VelocityParams = field(default_factory=VelocityParams)
 
     # decisions
     live_explained: float = (

@@ -139,12 +139,10 @@ class ClothesSolver:
         joints = self.terms.joints
         observed = joints.term(model, map(joints.detector(fitter, body, cameras), cameras.present))
         feet = np.array([INDEX["leftFoot"]])
-        planted = PlantedTerm(model, feet, np.zeros((1, 2)), self.params.planted)
+        planted = PlantedTerm(model, feet, np.zeros((1, 2)))
         terms = (*self.terms.measure(fitter, body, views, black.grey, 0), *observed, planted)
         fit = fitter.fit(body, views, TICK_S, 2, terms=terms)
-        predicted_information(
-            fit.covariance, body.velocity, 1.0, fitter.prediction_sd, [], self.params.motion
-        )
+        predicted_information(fit.covariance, body.velocity, 1.0, fitter.prediction_sd, [])
         cameras.learn(body, views)
         self._velocity(fit, views, body, TICK_S, ())
         evidence = PoseEvidence(cameras.classify, lambda _, __: terms)
@@ -172,7 +170,7 @@ class ClothesSolver:
         motion = None
         if last is not None:
             arms = confirmed_arms(fitter, last, predicted, views, p)
-            motion = prediction_prior(fitter, last, state.motion.velocity, dt_s, *arms, p.motion)
+            motion = prediction_prior(fitter, last, state.motion.velocity, dt_s, *arms)
         planted = self._planted(pictures.t_ns)
 
         def terms_of(drawn: MotionState, shown: Sequence[View]) -> tuple[Term, ...]:
@@ -278,7 +276,7 @@ class ClothesSolver:
         joints = self._feet.joints
         if not len(joints):
             return ()
-        return (PlantedTerm(self.model, joints, self._feet.places_m, self.params.planted),)
+        return (PlantedTerm(self.model, joints, self._feet.places_m),)
 
     def _estimate(
         self,
@@ -316,9 +314,7 @@ class ClothesSolver:
         of = self.model.space.columns
         columns = [slice(None) if part == WHOLE else of(part) for part in changed]
         confirmed, _ = confirmed_arms(self.fitter, fit, fit.state, views, self.params)
-        return velocity_between(
-            self.model, last, fit.state, confirmed, dt_s, columns, self.params.velocity
-        )
+        return velocity_between(self.model, last, fit.state, confirmed, dt_s, columns)
 
     def _trunk_prior(self, state: TrackState, ray: Floats | None, dt_s: float) -> Floats:
         """Information (n_pose,n_pose) of a prediction whose trunk and arms come from the shirt; ray: the line of sight."""
@@ -333,7 +329,7 @@ class ClothesSolver:
             return guided + np.diag(1.0 / (self.fitter.prediction_sd**2 * frames))
         by_trunk = dict.fromkeys(SIDES, 1.0)  # the arms are where the shirt placed them
         motion = prediction_prior(
-            self.fitter, state.whole, state.motion.velocity, dt_s, by_trunk, 1.0, p.motion
+            self.fitter, state.whole, state.motion.velocity, dt_s, by_trunk, 1.0
         )
         return np.asarray(motion + guided)
 

@@ -146,7 +146,7 @@ class ShirtCue:
             and last.match > p.shape.least_match
         )
         motion = prediction_prior(
-            fitter, last, start.velocity, dt_s, last.confirmed_arms, p.limbs.uncertain_arm, p.motion
+            fitter, last, start.velocity, dt_s, last.confirmed_arms, p.limbs.uncertain_arm
         )
         terms: tuple[Term, ...] = stereo_distance_terms(
             fitter, start, views, self._pictures.grey, frame_index, p.distances
@@ -172,7 +172,7 @@ class ShirtCue:
             taught_s += dt_s
         velocity = velocity_between(
             self.model, upper_body_state(previous.motion, self.model), fit.state, fit.confirmed_arms, dt_s,
-            [self._columns[side] for side in jumped], p.velocity,
+            [self._columns[side] for side in jumped],
         )  # fmt: skip
         redraw = fit is not unsearched or any(is_uncertain(s, unsearched, p.limbs) for s in SIDES)
         state = replace(state, velocity=velocity)

@@ -2,10 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from mocapd.fit.fit_params import FitParams, LimbSearchParams, MotionPriorParams
+from mocapd.fit.fit_params import FitParams, LimbSearchParams
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
-from mocapd.tracking.velocity import VelocityParams
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +23,6 @@ class ShirtParams:
     """Parameters of the shirt cue."""
 
     fit: FitParams = field(default_factory=FitParams)
-    motion: MotionPriorParams = field(default_factory=MotionPriorParams)
     limbs: LimbSearchParams = field(default_factory=LimbSearchParams)
     segmentation: SegmentationParams = field(default_factory=SegmentationParams)
     shape: ShapeLearningParams = field(default_factory=ShapeLearningParams)
@@ -34,7 +32,6 @@ class ShirtParams:
     arm_depths: float = 0.5  # weight of the keypoints' depths for arms before a single camera
 
     # motion from frame to frame
-    velocity: VelocityParams = field(default_factory=VelocityParams)
 
     # decisions
     live_match: float = 0.45  # share of rendered shirt pixels whose colour the picture has
