@@ -30,6 +30,7 @@ _LEAST_AGE = 6  # updates after which a background pixel is valid
 _AGE_BEHIND = 8  # inferred pixels are valid, and adapt quickly once they are visible
 _STEP = 4  # the gain is smooth: sampled at every fourth pixel each way
 _SPREAD = 10.0  # standard deviation of the gain's smoothing window [steps]
+_MOST_NEW = 3  # ticks that one update of a new background counts for, after a pause
 _FAR_SHARE = 0.02  # weight of the whole picture against the neighbourhood
 _GAIN = (0.1, 10.0)
 _PASSES = 2
@@ -92,7 +93,7 @@ def _local_sums(values: NDArray[np.float32]) -> NDArray[np.float32]:
 class BackgroundParams:
     """When a background pixel is valid, and how far the foreground differs from it."""
 
-    first_looks: int = 20  # updates that take every row
+    first_looks: int = 20  # ticks of 1/30 s in which updates take every row
     least_looks: int = 6  # updates after which a pixel is valid
     tolerance: float = 16.0  # of a channel, 0..255: three times the noise of a dim picture
     # of a shadow: which share of the light it leaves at least, and how far a channel may be off then, 0..255
@@ -206,7 +207,7 @@ class RoomBackground:
         pictures have the same weight."""
         if self.is_new:
             phases: Sequence[int] = range(_PHASES)
-            self._looks += 1
+            self._looks += min(ticks, _MOST_NEW)
         else:
             phases = [(self._looks + k) % _PHASES for k in range(min(ticks, _PHASES))]
             self._looks += len(phases)

@@ -277,3 +277,14 @@ def test_fewer_pictures_a_second_teach_the_background_as_fast(ticks: int) -> Non
             slow.learn(painted, NOBODY, ticks)
     np.testing.assert_array_equal(slow.mean, quick.mean)
     assert np.abs(quick.mean - learned().mean).max() > 5.0
+
+
+@pytest.mark.parametrize(("ticks", "pictures"), [(1, 20), (2, 10), (3, 7), (30, 7)])
+def test_it_is_known_after_two_thirds_of_a_second_at_any_rate(ticks: int, pictures: int) -> None:
+    """At 15 Hz it was new for 1.3 s: who was in view by then became part of it."""
+    background = RoomBackground(H, W, BackgroundParams())
+    for seed in range(pictures):
+        assert background.is_new
+        background.learn(wall(seed), NOBODY, ticks)
+    assert not background.is_new
+    assert (background.foreground(wall(99)) == BACKGROUND).all()
