@@ -16,6 +16,7 @@ import numpy as np
 import typer
 
 from lab.command_line import run
+from mocapd.body.bones import other_side
 from mocapd.errors import InputError
 from mocapd.geometry.rig_file import read_json
 
@@ -40,7 +41,7 @@ def mirrored_camera(camera: dict[str, Any]) -> dict[str, Any]:
 def mirrored_truth(truth: dict[str, Any]) -> dict[str, Any]:
     """The arrays of a truth.npz, mirrored at the plane x = 0: left is right."""
     names = [str(name) for name in truth["names"]]
-    other = [names.index(_other_side(name)) for name in names]
+    other = [names.index(other_side(name)) for name in names]
     sides, out = np.diag(_MIRROR), dict(truth)
     out["joints"] = truth["joints"][:, other] * sides
     out["tpose_joints"] = truth["tpose_joints"][other] * sides
@@ -49,13 +50,6 @@ def mirrored_truth(truth: dict[str, Any]) -> dict[str, Any]:
         if name in truth:
             out[name] = truth[name] * sides
     return out
-
-
-def _other_side(name: str) -> str:
-    for one, other in (("left", "right"), ("right", "left")):
-        if name.startswith(one):
-            return other + name.removeprefix(one)
-    return name
 
 
 def _write_video(source: Path, target: Path, hz: float, mirrored: bool, every: int) -> None:

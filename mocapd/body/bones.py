@@ -16,3 +16,10 @@ PARENT_OF = {
     "rightHand": "rightLowerArm", "rightUpperLeg": "hips", "rightLowerLeg": "rightUpperLeg",
     "rightFoot": "rightLowerLeg", "rightToes": "rightFoot",
 }  # fmt: skip
+
+
+def other_side(bone: str) -> str:
+    """`leftHand` to `rightHand` and back; a bone in the middle is its own."""
+    if bone.startswith("left"):
+        return "right" + bone[4:]
+    return "left" + bone[5:] if bone.startswith("right") else bone

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from mocapd.assets import asset_path
-from mocapd.body.bones import NAMES, PARENT_OF
+from mocapd.body.bones import NAMES, PARENT_OF, other_side
 from mocapd.geometry import rotations
 from mocapd.types import Floats, Ints, Pose, Skeleton
 
@@ -15,14 +15,8 @@ PARENTS = np.array([INDEX[PARENT_OF[n]] if n in PARENT_OF else -1 for n in NAMES
 N_JOINTS = len(NAMES)
 
 
-def _other_side(name: str) -> str:
-    if name.startswith("left"):
-        return "right" + name[4:]
-    return "left" + name[5:] if name.startswith("right") else name
-
-
 # (J,) of a left joint the right one
-OTHER_SIDE = np.array([INDEX[_other_side(name)] for name in NAMES])
+OTHER_SIDE = np.array([INDEX[other_side(name)] for name in NAMES])
 
 
 @cache

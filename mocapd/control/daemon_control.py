@@ -86,10 +86,8 @@ class DaemonControl:
                 return status_report(service, self._trouble.newest, self._preparing)
             case "recenter":
                 facing, outputs = service.recenter(), service.snapshot().outputs
-                informed = (name for name, entry in OUTPUTS.items() if entry.uses_facing)
-                return Recentered(
-                    facing.yaw_deg, tuple(name for name in informed if name in outputs)
-                )
+                informed = [n for n, entry in OUTPUTS.items() if entry.uses_facing and n in outputs]
+                return Recentered(facing.yaw_deg, tuple(informed))
             case "reload":
                 return self._reloads.ask()
             case other:

@@ -20,7 +20,7 @@ from mocapd.pipeline.frame_hub import TakesFrames
 from mocapd.pipeline.idle_moments import IdleMoments
 from mocapd.service.identical_cameras import IdenticalCameras, Trust, identical_groups
 from mocapd.service.room_memory import RoomMemory
-from mocapd.service.thread_priority import lower_priority
+from mocapd.service.thread_priority import watching
 from mocapd.service.view_watch import ViewWatch
 from mocapd.types import Bytes, Frame, Rig
 
@@ -139,14 +139,9 @@ class CameraWatch:
         return self._views.off_m
 
     def _run(self) -> None:
-        lower_priority()
-        try:
+        with watching(self._on_death):
             while not self._stopping.wait(_LOOK_EVERY_S):
                 self.look()
-        except BaseException as error:
-            if self._on_death is not None:
-                self._on_death(error)
-            raise
 
     def look(self) -> None:
         """Runs the checks once. Takes some milliseconds per camera, in idle moments of the pipeline, and in the first minute

@@ -14,7 +14,7 @@ from mocapd.calibrate.consistency.capture_check import CaptureCheck, CheckResult
 from mocapd.calibrate.consistency.person_views import WORK_PX
 from mocapd.clock import seconds
 from mocapd.pipeline.idle_moments import IdleMoments
-from mocapd.service.thread_priority import lower_priority
+from mocapd.service.thread_priority import watching
 from mocapd.types import Bytes, Frame, Rig
 
 _LONGEST_S = 120.0  # of collecting, when little moves
@@ -81,23 +81,15 @@ class ViewWatch:
         return max(self._result.off_m, _SPEED_M_S * late_s)
 
     def _run(self) -> None:
-        lower_priority()
-        try:
-            self._compare_again_and_again()
-        except BaseException as error:
-            if self._on_death is not None:
-                self._on_death(error)
-            raise
-
-    def _compare_again_and_again(self) -> None:
-        while not self._stopping.is_set():
-            result = self._compare()
-            if result is None:
-                return
-            self._result = result
-            self._stopping.wait(_REST_WARNED_S if result.findings else _REST_S)
-            self._waiting.clear()
-            self._is_collecting = not self._stopping.is_set()
+        with watching(self._on_death):
+            while not self._stopping.is_set():
+                result = self._compare()
+                if result is None:
+                    return
+                self._result = result
+                self._stopping.wait(_REST_WARNED_S if result.findings else _REST_S)
+                self._waiting.clear()
+                self._is_collecting = not self._stopping.is_set()
 
     def _breathe(self) -> None:
         if self._idle is not None and not self._stopping.is_set():

@@ -93,7 +93,7 @@ def _local_sums(values: NDArray[np.float32]) -> NDArray[np.float32]:
 class BackgroundParams:
     """When a background pixel is valid, and how far the foreground differs from it."""
 
-    first_looks: int = 20  # ticks of 1/30 s in which updates take every row
+    first_ticks: int = 20  # of 1/30 s, in which updates take every row
     least_looks: int = 6  # updates after which a pixel is valid
     tolerance: float = 16.0  # of a channel, 0..255: three times the noise of a dim picture
     # of a shadow: which share of the light it leaves at least, and how far a channel may be off then, 0..255
@@ -134,7 +134,7 @@ class RoomBackground:
     @property
     def is_new(self) -> bool:
         """Whether too few pictures were learned for a foreground."""
-        return self._looks < self._params.first_looks
+        return self._looks < self._params.first_ticks
 
     def empty_room(self) -> tuple[Singles, Bytes]:
         """The empty room (h,w,3) in the present light, and its validity (h,w)."""
@@ -145,14 +145,14 @@ class RoomBackground:
         is_room = body == 0
         self.mean[is_room] = picture[is_room]
         self.age[is_room] = self._params.least_looks
-        self._looks = self._params.first_looks
+        self._looks = self._params.first_ticks
         self._forget_earlier()
 
     def set_known(self, room: Bytes, valid: NDArray[np.bool_]) -> None:
         """Take the empty room (h,w,3) for the background where it is valid (h,w)."""
         self.mean[:] = room
         self.age[:] = np.where(valid, self._params.least_looks, 0)
-        self._looks = self._params.first_looks
+        self._looks = self._params.first_ticks
         self._forget_earlier()
 
     def forget_body(self, picture: Bytes, body: Bytes) -> None:

@@ -17,10 +17,7 @@ class ArrivalLimit:
         self.is_exceeded = False
         self._tokens = _BURST
         self._at_ns: int | None = None
-        self._counted_ns, self._counted = (
-            0,
-            0,
-        )  # start of the current count of dropped ones, and the count
+        self._counted_ns = self._counted = 0  # start of the current count of dropped ones, and that
 
     def take(self, now_ns: int) -> bool:
         """True if an arrival at `now_ns` is within the limit; `now_ns` must not decrease."""
@@ -39,4 +36,4 @@ class ArrivalLimit:
         if now_ns - self._counted_ns > _WITHIN_NS:
             self._counted_ns, self._counted = now_ns, 0
         self._counted += 1
-        self.is_exceeded = self.is_exceeded or self._counted >= _MANY_DROPPED
+        self.is_exceeded |= self._counted >= _MANY_DROPPED

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, replace
 
+from mocapd.body.bones import other_side
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.quaternions import IDENTITY_XYZW
-from mocapd.outputs.vmc.bone_names import other_side
 from mocapd.outputs.wire import Quaternion, Vector
 
 Row = tuple[float, float, float, float]

@@ -27,13 +27,6 @@ def vrm1_name(bone: str) -> str:
     return bone
 
 
-def other_side(bone: str) -> str:
-    """`leftHand` to `rightHand` and back; a bone in the middle is its own."""
-    if bone.startswith("left"):
-        return "right" + bone[4:]
-    return "left" + bone[5:] if bone.startswith("right") else bone
-
-
 def is_leaf(bone: str) -> bool:
     """True for toes, fingers, eyes and jaw, which are not sent while untracked.
 

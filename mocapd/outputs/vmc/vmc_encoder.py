@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
+from mocapd.body.bones import other_side
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.vmc.avatar import Avatar, mirror_avatar, reflect_position, wearer_avatar
-from mocapd.outputs.vmc.bone_names import is_leaf, other_side
+from mocapd.outputs.vmc.bone_names import is_leaf
 from mocapd.outputs.vmc.vmc_packets import Bundling, VmcPackets
 from mocapd.outputs.vmc.vmc_space import (
     VmcHeading,

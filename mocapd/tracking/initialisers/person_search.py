@@ -312,25 +312,19 @@ class PersonSearch:
             if other.explained <= fit.explained - less:
                 break
             fit = other
-        return self._with_lost_limbs(fit, candidate, terms)
+        return self._with_lost_limbs(fit, candidate, terms[0])
 
-    def _with_lost_limbs(
-        self, fit: Fit, candidate: _SearchCandidate, terms: Sequence[JointTerm]
-    ) -> Fit:
+    def _with_lost_limbs(self, fit: Fit, candidate: _SearchCandidate, keypoints: JointTerm) -> Fit:
         """The fit, with limbs laid through the keypoints on which three cameras or more agree, where it explains more: the
         look of the clothes is learned from the first pose."""
-        fitter = self._silhouettes
+        p, fitter = self._params, self._silhouettes
         joints_m = fitter.joints(fit.state)[0]
-        agreed = self._joints.term(
-            fitter.model, agreed_keypoints([one for term in terms for one in term.rays], joints_m)
-        )
-        lost = [name for term in agreed for name in limbs_off_crossings(term, joints_m)]
+        (agreed,) = self._joints.term(fitter.model, agreed_keypoints(keypoints.rays, joints_m))
+        lost = limbs_off_crossings(agreed, joints_m)
         if not lost:
             return fit
-        start = with_limbs_at_keypoints(fitter, fit.state, agreed[0], lost)
-        other = fit_to_blobs(
-            fitter, candidate.views, start, self._params.iterations, (self._floor, *agreed), self._params
-        )  # fmt: skip
+        start = with_limbs_at_keypoints(fitter, fit.state, agreed, lost)
+        other = fit_to_blobs(fitter, candidate.views, start, p.iterations, (self._floor, agreed), p)
         return other if other.explained > fit.explained else fit
 
     def _names(self, candidate: _SearchCandidate) -> tuple[str, ...]:

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from mocapd.outputs.vmc.bone_names import is_leaf, other_side, unity_name, vrm1_name
+from mocapd.body.bones import other_side
+from mocapd.outputs.vmc.bone_names import is_leaf, unity_name, vrm1_name
 from mocapd.outputs.vmc.vmc_encoder import VmcEncoder
 from mocapd.outputs.vmc.vmc_space import vmc_heading
 from mocapd.types import Floats
