@@ -148,7 +148,7 @@ class ClothesCue:
         views, rays = self.cameras.prepare(
             predicted, self._solver.searches_everywhere(self._ticks), detect
         )
-        share = 1.0 / every if is_shared else 1.0
+        share = min(self._ticks.usual / every, 1.0) if is_shared else 1.0
         found = [one for one in rays if one is not None]
         agreed = agreed_keypoints(found, self.fitter.joints(predicted)[0])
         terms = self._solver.terms.joints.term(self.model, agreed, share)
