@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 
@@ -71,7 +72,8 @@ class _Timed:
 def _figures(one: GateCase, build: BuildTracker, known: Calibration) -> Figures:
     ready = build(known)
     timed = _Timed(ready.tracker)
-    track = track_all(timed, ready.shape, frame_sets_for(one.case, known), lambda _: None)
+    frame_sets = islice(frame_sets_for(one.case, known), 0, None, one.every)
+    track = track_all(timed, ready.shape, frame_sets, lambda _: None)
     return replace(
         _scored(one, track),
         step_ms=float(np.median(timed.step_ms)),

@@ -13,7 +13,9 @@ from mocapd.evaluate.capture_eval import Case, open_case
 from mocapd.session.tracker_setup import Progress
 
 _KEY = re.compile(r"-[0-9a-f]{12}$")
-SETS = ("dev", "shirt", "one_camera", "plain", "rings", "failures", "interruptions", "rest")
+SETS = (
+    "dev", "half_rate", "shirt", "one_camera", "plain", "rings", "failures", "interruptions", "rest",
+)  # fmt: skip
 _NO_SHIRT = ("plain", "striped")  # in the name of a capture
 _SCORED_WHOLE = ("stereo_", "ring4_")  # captures of the whole body
 
@@ -22,7 +24,8 @@ _SCORED_WHOLE = ("stereo_", "ring4_")  # captures of the whole body
 class GateCase:
     """One recording of a set. joints: which are scored; by_chance: whether runs that hardly differ end apart, so that it
     is tracked several times; still_from_s: from then on nobody moves, None for a recording of motion; camera: the index
-    of the only one that is used, None for all."""
+    of the only one that is used, None for all; every: of the frame sets one of so many is shown, as a slower camera would.
+    """
 
     set_name: str
     case: Case
@@ -30,6 +33,7 @@ class GateCase:
     by_chance: bool = True
     still_from_s: float | None = None
     camera: int | None = None
+    every: int = 1
 
     @property
     def name(self) -> str:
@@ -44,6 +48,9 @@ def cases_of(
     """The recordings of these sets, those that are simulated made if need be. Raises InputError."""
     makers: dict[str, Callable[[], Iterator[GateCase]]] = {
         "dev": lambda: _dev(captures),
+        "half_rate": lambda: (
+            replace(one, set_name="half_rate", every=2) for one in _dev(captures)
+        ),
         "shirt": lambda: _simulated("shirt", recorded_set.planned(clips), cache_dir, progress),
         "one_camera": lambda: _one_camera(captures, clips, cache_dir, progress),
         "plain": lambda: _simulated(
