@@ -1,8 +1,13 @@
 """The live benchmark on a real daemon and a real subscriber, for three seconds."""
 
 import json
+import sys
 from pathlib import Path
 
+import pytest
+
+from mocapd.errors import UnavailableError
+from mocapd.evaluate.bench.bench_live import bench_live
 from tests.cli.mocapd_process import mocapd, mocapd_here
 
 SCENARIO = """
@@ -52,3 +57,9 @@ def test_a_daemon_that_nobody_can_hear_is_refused(
     outcome = mocapd_here(clean_env, "bench", "--capture", f"sim:{scenario}", *words)
     assert outcome.code == 78
     assert "zenoh.enabled" in outcome.err
+
+
+def test_a_daemon_that_ends_before_its_first_frame_is_quoted() -> None:
+    program = "import sys; sys.exit('mocapd: camera cam7 is not plugged in')"
+    with pytest.raises(UnavailableError, match="ended by itself -- mocapd: camera cam7"):
+        bench_live([sys.executable, "-c", program], 2, 1.0)

@@ -163,7 +163,11 @@ def _running(command: Sequence[str], runtime_dir: Path) -> Iterator[subprocess.P
     with tempfile.TemporaryFile() as said:
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=said, env=env)
         try:
-            yield process
+            try:
+                yield process
+            except (UnavailableError, psutil.NoSuchProcess):
+                if process.poll() is None:
+                    raise
             if process.poll() is not None:
                 raise _exit_error(said)
         finally:
