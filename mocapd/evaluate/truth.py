@@ -1,6 +1,7 @@
 """The ground truth of a capture. Only this package may read it: no tracker ever sees it."""
 
 import zipfile
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -39,8 +40,7 @@ def load_truth(capture: Path) -> Truth:
             str(path),
             "choose a capture with a truth.npz, or use `mocapd track`",
         )
-    info_path = capture / "info.json"
-    info = read_json(info_path) if info_path.is_file() else {}
+    light_change_s, clear_s = _events_s(capture / "info.json")
     try:
         with np.load(path, allow_pickle=False) as data:
             missing = [field for field in _FIELDS if field not in data.files]
@@ -51,10 +51,10 @@ def load_truth(capture: Path) -> Truth:
                 times_s=data["times"].astype(float),
                 joints_m=data["joints"].astype(float),
                 visible=data["visible"].astype(bool),
-                light_change_s=_light_change_s(info),
-                clear_s=float(info["clear_s"]) if "clear_s" in info else None,
+                light_change_s=light_change_s,
+                clear_s=clear_s,
             )
-    except (OSError, ValueError, zipfile.BadZipFile) as error:
+    except (OSError, ValueError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError(f"cannot be read ({error})", str(path), _RESTORE) from None
     frames, joints = len(truth.times_s), len(truth.names)
     if truth.joints_m.shape != (frames, joints, 3) or truth.visible.shape != (frames,):
@@ -62,6 +62,19 @@ def load_truth(capture: Path) -> Truth:
     if not truth.visible.any():
         raise InputError("nobody is visible in this capture", str(path), "choose another one")
     return truth
+
+
+def _events_s(path: Path) -> tuple[float | None, float | None]:
+    """When a lamp goes out and when an occlusion ends, of an info.json if there is one. Raises InputError naming it."""
+    info = read_json(path) if path.is_file() else {}
+    try:
+        return _light_change_s(info), float(info["clear_s"]) if "clear_s" in info else None
+    except (AttributeError, KeyError, TypeError, ValueError):
+        raise InputError(
+            "does not say as numbers when lamps go out and when an occlusion ends",
+            str(path),
+            _RESTORE,
+        ) from None
 
 
 def _light_change_s(info: dict[str, Any]) -> float | None:

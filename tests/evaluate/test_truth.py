@@ -74,3 +74,21 @@ def test_a_capture_in_which_nobody_is_seen_cannot_be_scored(tmp_path: Path) -> N
     )
     with pytest.raises(InputError, match="nobody is visible"):
         load_truth(tmp_path)
+
+
+@pytest.mark.parametrize("info", ["[]", '{"clear_s": null}', '{"light_event": 3}'])
+def test_a_description_of_another_kind_is_named(info: str, tmp_path: Path) -> None:
+    (write_truth(tmp_path) / "info.json").write_text(info)
+    with pytest.raises(InputError, match=r"info\.json: .*lamps"):
+        load_truth(tmp_path)
+
+
+def test_a_compressed_truth_with_wrong_bytes_is_named(tmp_path: Path) -> None:
+    path = write_truth(tmp_path) / "truth.npz"
+    with np.load(path) as arrays:
+        np.savez_compressed(path, **arrays)
+    data = bytearray(path.read_bytes())
+    data[100:110] = b"\xff" * 10
+    path.write_bytes(data)
+    with pytest.raises(InputError, match=r"truth\.npz: cannot be read.*decompressing"):
+        load_truth(tmp_path)
