@@ -23,6 +23,12 @@ class MixtureParams:
     grow: int = 1
 
 
+def mask_size(size_px: tuple[int, ...], shift: int) -> tuple[int, int]:
+    """Height and width of the mask that covers a frame of this height and width."""
+    height, width = size_px
+    return -(-height >> shift), -(-width >> shift)
+
+
 class BackgroundSubtractor:
     """The background of one camera. It learns from every frame it is given; one thread."""
 
@@ -39,7 +45,7 @@ class BackgroundSubtractor:
         )
 
     def apply(self, pixels: Bytes, learning_rate: float = -1.0) -> Bytes:
-        """The mask (H >> shift, W >> shift) uint8 of `pixels` (H,W,3): 0 background, 255 foreground.
+        """The mask uint8 of `pixels` (H,W,3): 0 background, 255 foreground; of the size `mask_size`.
 
         learning_rate: 0 does not learn, 1 replaces the model by this frame, negative: automatic by
         `history`. The first frame after a reset has no foreground.
@@ -50,4 +56,8 @@ class BackgroundSubtractor:
         if self.params.grow > 0:
             size = 2 * self.params.grow + 1
             mask = cv2.dilate(mask, np.ones((size, size), dtype=np.uint8))
+        # blocks that the frame's edge cuts before their middle are like those beside them
+        h, w = mask_size(pixels.shape[:2], self.params.shift)
+        below, right = h - mask.shape[0], w - mask.shape[1]
+        mask = cv2.copyMakeBorder(mask, 0, below, 0, right, cv2.BORDER_REPLICATE)
         return np.asarray(mask, dtype=np.uint8)

@@ -7,7 +7,7 @@ import numpy as np
 from mocapd.published.wang2011.chrominance import HistogramSearch
 from mocapd.published.wang2011.classify_kernels import classify, classify_with_prior, sum_colours
 from mocapd.published.wang2011.drawing import Grid, PatchRenderer
-from mocapd.published.wang2011.mog_background import BackgroundSubtractor
+from mocapd.published.wang2011.mog_background import BackgroundSubtractor, mask_size
 from mocapd.published.wang2011.params import Params
 from mocapd.published.wang2011.patch_kernels import inner_ids
 from mocapd.shirt.colour.colour_model import ColourModel, fold
@@ -144,12 +144,9 @@ class Wang2011Segmenter:
 
     def _remember_body(self, grid: Grid, drawing: PatchRenderer) -> None:
         shift = self.params.background.shift
-        body = np.zeros(
-            (self.camera.size_px[1] >> shift, self.camera.size_px[0] >> shift), np.uint8
-        )
+        body = np.zeros(mask_size(self.camera.size_px[::-1], shift), np.uint8)
         rows, columns = np.nonzero(drawing.triangle_at >= 0)
         body[
-            np.minimum((grid.y0 + rows * grid.stride) >> shift, body.shape[0] - 1),
-            np.minimum((grid.x0 + columns * grid.stride) >> shift, body.shape[1] - 1),
+            (grid.y0 + rows * grid.stride) >> shift, (grid.x0 + columns * grid.stride) >> shift
         ] = 255
         self._body = body

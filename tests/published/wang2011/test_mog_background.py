@@ -55,3 +55,14 @@ def test_growing_keeps_a_margin() -> None:
     large = grown.apply(room(99, person=True))
     assert (large[small > 0] == 255).all()
     assert (large > 0).sum() > (small > 0).sum()
+
+
+def test_the_mask_covers_a_frame_whose_sides_are_no_multiple_of_its_blocks() -> None:
+    subtractor = BackgroundSubtractor(MixtureParams(shift=2, grow=0))
+    for seed in range(30):
+        subtractor.apply(room(seed)[:118, :157])
+    newcomer = np.full((118, 157, 3), 110, np.uint8)
+    newcomer[100:] = (40, 200, 220)
+    mask = subtractor.apply(newcomer)
+    assert mask.shape == (30, 40)  # a classifier reads it at 117 >> 2, 156 >> 2
+    assert (mask[26:] == 255).all()
