@@ -15,7 +15,7 @@ class SilhouetteWeight:
     """The weight of Deutscher 2000 without edges: which share of the model falls on the silhouettes of all cameras."""
 
     def __init__(self, cameras: Sequence[Camera], silhouettes: Sequence[Bytes]) -> None:
-        """silhouettes (h,w): 0 is background; each shows its camera's whole frame."""
+        """silhouettes (h,w): 0 is background; each of the size of its camera's work picture."""
         sizes = [(mask.shape[1], mask.shape[0]) for mask in silhouettes]
         self._projections: StackProjections = stack_projections(cameras, sizes)
         self._maps = np.asarray(

@@ -57,9 +57,7 @@ class CameraSilhouette:
     def mark_body(self, places_m: Floats) -> None:
         """Exclude a body from learning, with a margin: the ellipsoids that contain these points (E,S,3) [m, world]."""
         self._drawn[:] = 0
-        camera = self.picture.camera
-        h, w = self.picture.bgr.shape[:2]
-        at = (project(camera, places_m) + 0.5) * (np.array([w, h]) / camera.size_px) - 0.5
+        at = (project(self.picture.camera, places_m) + 0.5) / self.picture.image_scale - 0.5
         for one in at:
             if np.isfinite(one).all():
                 corners = np.clip(np.rint(one), -10_000, 10_000).astype(np.int32)

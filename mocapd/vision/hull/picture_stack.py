@@ -20,14 +20,20 @@ class StackProjections(NamedTuple):
     size_px: Ints
 
 
+def block_px(camera: Camera, size_px: tuple[int, int]) -> int:
+    """Side of the blocks of a frame's pixels that the pixels of its work picture are averages of. size_px: width and height
+    of the picture, which may lack the last columns and rows of the frame."""
+    return max(1, round(camera.size_px[0] / size_px[0]))
+
+
 def stack_projections(
     cameras: Sequence[Camera], sizes_px: Sequence[tuple[int, int]]
 ) -> StackProjections:
-    """Projections into pictures of these sizes (width, height) that show each camera's whole frame."""
+    """Projections into work pictures of these sizes (width, height), see `block_px`."""
     focal = np.empty((len(cameras), 4))
     for i, (camera, size) in enumerate(zip(cameras, sizes_px, strict=True)):
-        scale = np.array(size) / camera.size_px
-        focal[i, :2] = scale * (camera.K[0, 0], camera.K[1, 1])
+        scale = 1.0 / block_px(camera, size)
+        focal[i, :2] = scale * camera.K[[0, 1], [0, 1]]
         # pixel centres are at integers
         focal[i, 2:] = scale * (camera.K[:2, 2] + 0.5) - 0.5
     return StackProjections(

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from mocapd.geometry.camera_model import project, rays
 from mocapd.types import Bytes, Camera, Floats, Ints, Singles
 from mocapd.vision.hull.hull_kernels import clip_rays, sum_at_points
-from mocapd.vision.hull.picture_stack import stack_pictures, stack_projections
+from mocapd.vision.hull.picture_stack import block_px, stack_pictures, stack_projections
 
 _MOST_INTERVALS = 8  # of a ray: a body has four limbs
 CERTAIN = 50.0  # log-odds of a mask that is believed
@@ -70,7 +70,7 @@ def ray_hull(
 ) -> RayIntervals:
     """Clip the rays of the camera with the largest silhouette.
 
-    silhouettes (h,w): 0 is background; each shows its camera's whole frame at any size. box_m (2,3): lower and upper
+    silhouettes (h,w): 0 is background; each of the size of its camera's work picture. box_m (2,3): lower and upper
     corner of the space that is looked at [m, world]. No rays without a camera or without foreground.
     """
     p = params if params is not None else RayHullParams()
@@ -146,9 +146,9 @@ def _grid(mask: Bytes, wanted: int, camera: Camera) -> tuple[Floats, float]:
     stride = max(1, int(np.sqrt(np.count_nonzero(mask) / wanted)))
     rows, columns = np.nonzero(mask[stride // 2 :: stride, stride // 2 :: stride])
     xy = np.stack([columns, rows], axis=-1) * stride + stride // 2
-    scale = np.array(camera.size_px) / (mask.shape[1], mask.shape[0])
-    cell = stride * scale / (camera.K[0, 0], camera.K[1, 1])
-    pixels: Floats = (xy + 0.5) * scale - 0.5
+    scale = block_px(camera, (mask.shape[1], mask.shape[0]))
+    cell = stride * scale / camera.K[[0, 1], [0, 1]]
+    pixels = np.asarray((xy + 0.5) * scale - 0.5, np.float64)
     return pixels, float(cell.prod())
 
 
@@ -177,7 +177,7 @@ def carve_log_odds(
     """Log-odds (P,) that points (P,3) [m, world] are the person's; one belongs to the hull where they exceed a threshold,
     0 for even odds.
 
-    pixel_log_odds (h,w) of each camera, over its whole frame at any size. A camera without a point in view says
+    pixel_log_odds (h,w) of each camera, of the size of its work picture. A camera without a point in view says
     nothing of it; -inf for a point that fewer than two cameras see.
     """
     maps = np.asarray(
