@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from mocapd.calibrate.bump.landmarks import find_landmarks, measure_turn
+from mocapd.calibrate.bump.landmarks import find_landmarks, landmarks_at, measure_turn
+from mocapd.geometry.nominal_rig import nominal_rig
 from tests.calibrate.distant_scene import AXES, Room, camera, turn
 
 
@@ -40,3 +41,11 @@ def test_nothing_agrees_where_there_is_nothing_to_see() -> None:
     plain = find_landmarks(np.full((240, 320, 3), 90, np.uint8), room.camera)
     assert len(plain.places) == 0
     assert measure_turn(plain, room.picture(), room.camera).agree == 0
+
+
+def test_the_small_picture_of_a_frame_of_any_height_shows_all_of_it() -> None:
+    (webcam,) = nominal_rig("webcam", (848, 480)).cameras
+    small, corner = np.zeros((90, 160), np.uint8), np.array([[159.5, 89.5]], np.float32)
+    (ray,) = landmarks_at(small, corner, webcam).rays
+    x, y = (np.array([847.5, 479.5]) - webcam.K[:2, 2]) / webcam.K[0, 0]
+    assert ray / ray[2] == pytest.approx([x, y, 1.0])

@@ -53,12 +53,12 @@ def find_landmarks(pixels: Bytes, camera: Camera) -> Landmarks:
     corners: Any = cv2.goodFeaturesToTrack(picture, 0, _QUALITY, _APART_PX, blockSize=5)
     places = np.asarray([] if corners is None else corners, dtype=np.float32).reshape(-1, 2)
     places = _spread(places)
-    return Landmarks(picture, places, _rays(places, camera))
+    return Landmarks(picture, places, _rays(picture, places, camera))
 
 
 def landmarks_at(picture: Bytes, places: Singles, camera: Camera) -> Landmarks:
     """Marks from stored positions, which lack the rays."""
-    return Landmarks(picture, places, _rays(places, camera))
+    return Landmarks(picture, places, _rays(picture, places, camera))
 
 
 def measure_turn(marks: Landmarks, pixels: Bytes, camera: Camera) -> CameraTurn:
@@ -110,7 +110,7 @@ def _track(marks: Landmarks, picture: Bytes, camera: Camera) -> tuple[Floats, Fl
     there, is_tracked = _flow(marks.picture, picture, marks.places)
     back, again = _flow(picture, marks.picture, there)
     same = is_tracked & again & (np.abs(back - marks.places).max(axis=1) < _BACK_PX)
-    return marks.rays[same], _rays(there[same], camera)
+    return marks.rays[same], _rays(picture, there[same], camera)
 
 
 def _flow(a: Bytes, b: Bytes, places: Singles) -> tuple[Singles, NDArray[np.bool_]]:
@@ -122,9 +122,9 @@ def _flow(a: Bytes, b: Bytes, places: Singles) -> tuple[Singles, NDArray[np.bool
     return np.asarray(there, dtype=np.float32), np.asarray(is_tracked).ravel() > 0
 
 
-def _rays(places: Singles, camera: Camera) -> Floats:
-    """Unit vectors (N,3) in the camera's frame through places (N,2) of its small picture."""
-    scale = camera.size_px[0] / _WIDTH_PX
+def _rays(picture: Bytes, places: Singles, camera: Camera) -> Floats:
+    """Unit vectors (N,3) in the camera's frame through places (N,2) of its small picture (h,w)."""
+    scale = np.array(camera.size_px) / picture.shape[::-1]
     xy = normalised(camera, (places.astype(np.float64) + 0.5) * scale - 0.5).reshape(-1, 2)
     rays = np.column_stack([xy, np.ones(len(xy))])
     out: Floats = rays / np.linalg.norm(rays, axis=1, keepdims=True)
