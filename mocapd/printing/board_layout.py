@@ -20,6 +20,7 @@ _RULER_STRIP_MM = RULER_HEIGHT_MM + _GAP_MM
 _COMMAND_STRIP_MM = 9.0
 _CROSS_MM = 4.5  # from the board's edges
 _CROSS_STRIP_MM = 7.0
+_TITLED_RULER_MM = 176.0  # a ruler with the title beside it
 _EPSILON_MM = 1e-6
 
 Rect = tuple[float, float, float, float]  # x, y, width, height
@@ -107,15 +108,15 @@ def layout_of(board: BoardSpec, paper: str) -> Layout:
 
 
 def layout_behind(front: Layout) -> Layout:
-    """The back page: mirrored across the page, so that everything lies behind its front counterpart on a sheet
-    printed on both sides."""
+    """The back page: mirrored across the page, so that board and crosses lie behind their front counterparts on a sheet
+    printed on both sides. The ruler begins below the board where the page has room for it."""
     width_mm = front.page_mm[0]
     x, y, width, height = front.board
     left = width_mm - x - width
     return replace(
         front,
         board=(left, y, width, height),
-        ruler_mm=(left, front.ruler_mm[1]),
+        ruler_mm=(min(left, width_mm - EDGE_MM - _TITLED_RULER_MM), front.ruler_mm[1]),
         crosses={letter: (width_mm - cx, cy) for letter, (cx, cy) in front.crosses.items()},
     )
 

@@ -161,6 +161,15 @@ def test_two_sides_say_how_they_are_glued() -> None:
     assert "each cross on the pin of its own letter" in back
 
 
+def test_the_back_of_a_small_board_has_all_of_its_ruler_and_its_words_on_the_page() -> None:
+    board = fitted_board("A4", 3, 3, "DICT_4X4_50", two_sided=True, square_m=0.02)
+    back = printed(board_pdf(board, "A4"), 1, 4.0)
+    margin = back.pixels[:, -4 * 6 :]
+    assert (margin == 255).all()
+    x, y = layout_behind(layout_of(board, "A4")).ruler_mm
+    assert back.part((x + RULER_MM - 0.2, y), (0.4, 4.0)).min() < 128
+
+
 def test_the_same_board_gives_the_same_bytes() -> None:
     board = fitted_board("A4", 5, 7, "DICT_4X4_50")
     assert board_pdf(board, "A4") == board_pdf(board, "A4")
