@@ -320,7 +320,7 @@ class Hecht2009Tracker:
         if tracking is Tracking.LOST or person is None:
             return Track(lost_body(frames.t_ns, self.name), shape)
         away_s = seconds(frames.t_ns - person.t_ns)
-        pose = skeleton_from_points(self._body, person.state.points_m).pose
+        pose = skeleton_from_points(self._body, person.state.points_m)
         spread = np.full(N_POINTS, np.inf)
         for limb, which in LIMBS.items():
             spread[list(which)] = np.sqrt(person.clouds[limb].variance_m2)

@@ -4,14 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.head_proportions import MIDDLE
 from mocapd.geometry.camera_model import project, to_camera
 from mocapd.published.hecht2009.head.head_colours import HeadEllipse
 from mocapd.types import Camera, Floats
 
-# From the head's joint, for a person facing +Z: the face between brow and nose. A head is 0.130 of the stature high
-# (Drillis and Contini 1966).
-FACE = np.array([0.0, 0.050, 0.075])
+# A head is 0.130 of the stature high (Drillis and Contini 1966).
 HALF_WIDTH = 0.048
 HALF_HEIGHT = 0.066
 HALF_LENGTH = 0.058
@@ -29,31 +26,6 @@ class HeadSize:
 def head_size(stature_m: float) -> HeadSize:
     """Of a grown person."""
     return HeadSize(HALF_WIDTH * stature_m, HALF_HEIGHT * stature_m, HALF_LENGTH * stature_m)
-
-
-def yaw_rotation(yaw_rad: float) -> Floats:
-    """world_from_head (3,3) of an upright head that faces +Z turned by yaw to its left."""
-    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
-    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
-
-
-def joint_of(middle_m: Floats, stature_m: float, yaw_rad: float | None) -> Floats:
-    """The head's joint (3,) below and behind the head's middle (3,) [m, world]; only below where it may look anywhere."""
-    joint: Floats = middle_m - _from_middle(MIDDLE, yaw_rad) * stature_m
-    return joint
-
-
-def face_of(middle_m: Floats, stature_m: float, yaw_rad: float | None) -> Floats:
-    """The middle of the face (3,) before the head's middle (3,) [m, world]; the head's where it may look anywhere."""
-    face: Floats = middle_m + _from_middle(FACE - MIDDLE, yaw_rad) * stature_m
-    return face
-
-
-def _from_middle(offset: Floats, yaw_rad: float | None) -> Floats:
-    if yaw_rad is None:
-        return offset * (0.0, 1.0, 0.0)
-    turned_offset: Floats = yaw_rotation(yaw_rad) @ offset
-    return turned_offset
 
 
 def ellipse_of(camera: Camera, middle_m: Floats, size: HeadSize) -> HeadEllipse | None:

@@ -41,17 +41,13 @@ class HeadPicture:
 class HeadTrack:
     """A head in one instant, world frame [m].
 
-    joint_m (3,): the skeleton's head joint; middle_m: the head's middle; face_m: the middle of the face; None where
-    lost. velocity_m_s (3,). sigma_along_m, sigma_across_m: one standard deviation along the ray of the nearest
-    camera and across it. yaw_rad: the face's direction, 0 along +Z, positive to the person's left; None: unknown.
-    boxes: this head's face detections in this instant. support: score of colours and outline, about 0..2.
+    middle_m (3,): the head's middle; None where lost. sigma_along_m, sigma_across_m: one standard deviation along the
+    ray of the nearest camera and across it. yaw_rad: the face's direction, 0 along +Z, positive to the person's left;
+    None: unknown. boxes: this head's face detections in this instant. support: score of colours and outline, about 0..2.
     """
 
     state: HeadState
-    joint_m: Floats | None = None
     middle_m: Floats | None = None
-    face_m: Floats | None = None
-    velocity_m_s: Floats | None = None
     sigma_along_m: float = float(np.inf)
     sigma_across_m: float = float(np.inf)
     yaw_rad: float | None = None

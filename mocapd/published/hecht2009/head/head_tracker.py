@@ -32,7 +32,6 @@ from mocapd.published.hecht2009.head.head_evidence import HeadEvidence, HeadGues
 from mocapd.published.hecht2009.head.head_outline import outlined_head
 from mocapd.published.hecht2009.head.head_params import HeadParams
 from mocapd.published.hecht2009.head.head_particle_kernels import score_observations
-from mocapd.published.hecht2009.head.head_shape import face_of, joint_of
 from mocapd.published.hecht2009.head.head_track import (
     HeadPicture,
     HeadState,
@@ -182,11 +181,10 @@ class HeadTracker:
     def _track_of_face(self, state: HeadState, of: FaceCandidate, placed: PlacedFace) -> HeadTrack:
         yaw = self._towards_rad(placed.middle_m, of.view)
         boxes = tuple(placed.boxes.get(i) for i in range(len(self._cameras)))
+        across_m = self._across_m(self._params.face_sd, of, placed)
         return HeadTrack(
-            state, joint_of(placed.middle_m, self._stature_m, yaw), placed.middle_m,
-            face_of(placed.middle_m, self._stature_m, yaw), np.zeros(3), placed.sigma_along_m,
-            self._across_m(self._params.face_sd, of, placed), yaw, boxes, 0.0, self._fault,
-        )  # fmt: skip
+            state, placed.middle_m, placed.sigma_along_m, across_m, yaw, boxes, 0.0, self._fault
+        )
 
     def _towards_rad(self, middle_m: Floats, camera: int) -> float:
         """The yaw of a head that looks at a camera."""
@@ -228,7 +226,7 @@ class HeadTracker:
         self._evidence.learn(views, middle, velocity, sighting.boxes, dt_s)
         facing = self._faceless_s <= params.facing_s
         self._yaw_rad = self._evidence.yaw_rad(views, middle, velocity) if facing else None
-        return self._track(middle, velocity, covariance, sighting.boxes, support)
+        return self._track(middle, covariance, sighting.boxes, support)
 
     def _check_place(
         self, views: Sequence[HeadView], boxes: Sequence[FaceBox | None], dt_s: float
@@ -252,18 +250,14 @@ class HeadTracker:
     def _track(
         self,
         middle: Floats,
-        velocity: Floats,
         covariance: Floats,
         boxes: tuple[FaceBox | None, ...],
         support: float,
     ) -> HeadTrack:
         along, across = self._spread(middle, covariance)
-        yaw = self._yaw_rad
         return HeadTrack(
-            HeadState.TRACKED, joint_of(middle, self._stature_m, yaw), middle,
-            face_of(middle, self._stature_m, yaw), velocity, along,
-            across, yaw, boxes, support, self._fault,
-        )  # fmt: skip
+            HeadState.TRACKED, middle, along, across, self._yaw_rad, boxes, support, self._fault
+        )
 
     def _nearest(self, middle: Floats) -> int:
         """The nearest camera."""

@@ -8,6 +8,7 @@ two WAIST points part the trunk in two, at half the height between the joints `s
 
 import numpy as np
 
+from mocapd.body.head_proportions import MIDDLE
 from mocapd.body.shape import BodyShape
 from mocapd.body.skeleton import INDEX
 from mocapd.types import Floats, Skeleton
@@ -40,8 +41,6 @@ _OF_JOINTS = {NECK: "neck"} | {
 JOINT_POINTS = np.array(list(_OF_JOINTS))
 JOINTS_OF_POINTS = np.array([INDEX[name] for name in _OF_JOINTS.values()])
 
-# from the head's joint to its middle, in statures: the head is 0.130 high (Drillis and Contini 1966)
-_HEAD_MIDDLE = np.array([0.0, 0.050, 0.020])
 _WAIST_HALF_WIDTH = 0.075  # in statures: a little inside of the trunk's surface
 
 
@@ -74,5 +73,5 @@ def head_forward(points_m: Floats) -> Floats:
 
 def _head_middle(shape: BodyShape, skeleton: Skeleton) -> Floats:
     size = shape.stature_m * shape.factor("head_size")
-    middle: Floats = skeleton.rest_m[INDEX["head"]] + _HEAD_MIDDLE * size
+    middle: Floats = skeleton.rest_m[INDEX["head"]] + MIDDLE * size
     return middle

@@ -43,15 +43,13 @@ class Frusta:
     """C frusta in the order of NAMES.
 
     start_index, end_index (C,): rows of `ends_of`; radius_start_m, radius_end_m (C,): half the breadth in the frontal
-    view; depth_ratio (C,): depth of a cross-section relative to its breadth, 1 for limbs; half_head_m: from the head's
-    middle to chin and crown; head_ahead_m: of its middle in front of the point HEAD.
+    view; half_head_m: from the head's middle to chin and crown; head_ahead_m: of its middle in front of the point HEAD.
     """
 
     start_index: Ints
     end_index: Ints
     radius_start_m: Floats
     radius_end_m: Floats
-    depth_ratio: Floats
     half_head_m: float
     head_ahead_m: float
 
@@ -93,12 +91,9 @@ def build_frusta(shape: BodyShape, skeleton: Skeleton, rest_m: Floats) -> Frusta
     radii = np.array([
         _end_radii(tube, ends[a], ends[b]) for tube, (a, b) in zip(rings, index, strict=True)
     ])  # fmt: skip
-    depth_ratio = np.ones(len(index))
-    for k, level in ((1, 0), (2, 1)):
-        radii[k] = trunk[level : level + 2, 0]
-        depth_ratio[k] = (trunk[level : level + 2, 1] / trunk[level : level + 2, 0]).mean()
+    radii[1], radii[2] = trunk[:2, 0], trunk[1:, 0]
     start, end = np.array(index).T
-    return Frusta(start, end, radii[:, 0], radii[:, 1], depth_ratio, half_head, ahead)
+    return Frusta(start, end, radii[:, 0], radii[:, 1], half_head, ahead)
 
 
 def trunk_ellipses(shape: BodyShape, skeleton: Skeleton, rest_m: Floats) -> Floats:

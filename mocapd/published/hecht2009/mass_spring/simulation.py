@@ -103,15 +103,11 @@ def head_middle(body: MassSpringBody, state: MassSpringState) -> Floats:
     return middle
 
 
-def with_points(
-    state: MassSpringState, which: Sequence[int], points_m: Floats, keep_velocities: bool = True
-) -> MassSpringState:
-    """Some points overwritten by points_m (K,3), as by the mean of a particle filter; without keep_velocities they rest."""
-    points, velocities = state.points_m.copy(), state.velocities_m_s.copy()
+def with_points(state: MassSpringState, which: Sequence[int], points_m: Floats) -> MassSpringState:
+    """Some points overwritten by points_m (K,3), as by the mean of a particle filter; velocities unchanged."""
+    points = state.points_m.copy()
     points[list(which)] = points_m
-    if not keep_velocities:
-        velocities[list(which)] = 0.0
-    return MassSpringState(points, velocities)
+    return replace(state, points_m=points)
 
 
 def simulate(

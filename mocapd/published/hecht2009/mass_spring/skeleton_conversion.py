@@ -1,11 +1,9 @@
-"""Converts between the sixteen points and the skeleton, with the uncertainty of undetermined rotations.
+"""Converts between the sixteen points and the skeleton.
 
 Points determine trunk, hips and the directions of limbs. They determine the twist of an upper arm or thigh as far as its
 joint is bent, but not the twist of forearm, shank and head, nor the rotations of hands and feet. An undetermined rotation
-is the smallest one from the bone above, with a standard deviation.
+is the smallest one from the bone above.
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -46,24 +44,13 @@ _TRUNK_SHARES = np.array([1 / 3, 2 / 3, 1.0, 0.5])
 _TRUNK_POINTS = np.array([[*SHOULDER, *WAIST], [*HIP, *WAIST]])
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
-# Standard deviations [rad] of what nothing determines: half of the joints' ranges
+# Standard deviations [rad] of a twist that nothing determines: half of the joints' ranges
 _OPEN_TWIST_RAD = np.radians([60.0, 60.0, 30.0, 30.0])
-_OPEN_FOREARM_RAD, _OPEN_SHANK_RAD, _OPEN_HEAD_RAD = np.radians([45.0, 15.0, 35.0])
-_OPEN_HAND_RAD, _OPEN_FOOT_RAD = np.radians([40.0, 20.0])
 _POINT_SD_M = 0.03  # of a limb's point across the limb
 _HINGE_SD_RAD = np.radians(15.0)  # the hinge's own direction differs between people and skeletons
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SkeletonPose:
-    """pose: of the body's own skeleton; open_rad (22,): standard deviation of the undetermined part of each bone's
-    rotation, 0 where points determine it; about the bone's axis, for hands, feet and toes about any axis."""
-
-    pose: Pose
-    open_rad: Floats
-
-
-def skeleton_from_points(body: MassSpringBody, points_m: Floats) -> SkeletonPose:
+def skeleton_from_points(body: MassSpringBody, points_m: Floats) -> Pose:
     """The pose of the body's skeleton for points (16,3) [m, world]. Bones have fixed lengths, so joints differ from points
     by the springs' extension; the trunk is the best fit to shoulders and hips."""
     p, rest = np.asarray(points_m, dtype=float), body.skeleton.rest_m
@@ -105,8 +92,7 @@ def skeleton_from_points(body: MassSpringBody, points_m: Floats) -> SkeletonPose
     quats = rotations.canonical(quats)
     pose = Pose(np.zeros(3), quats)
     placed = joint_positions(body.skeleton, pose)[_UPPER_BONE]
-    pose = Pose((p[_UPPER] - placed).mean(axis=0), quats)
-    return SkeletonPose(pose, _what_is_open(np.sqrt(known * spread2)))
+    return Pose((p[_UPPER] - placed).mean(axis=0), quats)
 
 
 def points_from_skeleton(body: MassSpringBody, pose: Pose) -> Floats:
@@ -165,14 +151,3 @@ def _bend_side(untwisted_xyzw: Floats, bone_m: Floats, reach_m: Floats) -> tuple
     across = _cross(along, _BENDS_TO)
     p, q = np.vecdot(local, _cross(across, along)), np.vecdot(local, across)
     return np.arctan2(q, p), np.hypot(p, q)
-
-
-def _what_is_open(twist_rad: Floats) -> Floats:
-    out = np.zeros(N_JOINTS)
-    out[INDEX["head"]], out[INDEX["neck"]] = _OPEN_HEAD_RAD, 0.5 * _OPEN_HEAD_RAD
-    out[_UPPER_BONE] = twist_rad
-    below = np.repeat([_OPEN_FOREARM_RAD, _OPEN_SHANK_RAD], 2)
-    out[_LOWER_BONE] = np.hypot(out[_UPPER_BONE], below)
-    out[_END_BONE] = np.hypot(out[_LOWER_BONE], np.repeat([_OPEN_HAND_RAD, _OPEN_FOOT_RAD], 2))
-    out[_TOES] = out[_END_BONE[2:]]
-    return out

@@ -1,4 +1,4 @@
-"""The springs between the points: topology, compliance, lengths, and lengths that follow a person slowly.
+"""The springs between the points: topology, compliance and lengths.
 
 The twenty-four of the paper's figure 1: a bone for each part of a limb and the neck, five in the shoulder girdle, and two
 quadrilaterals with their diagonals that share the waist line. Compliance is the give per load [m/N] (Macklin et al.
@@ -16,7 +16,6 @@ from mocapd.published.hecht2009.mass_spring.body_points import (
     HEAD,
     HIP,
     KNEE,
-    MIRROR,
     NECK,
     SHOULDER,
     WAIST,
@@ -42,11 +41,10 @@ class Compliances:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Springs:
-    """S springs: ends (S,2) point indices, compliance (S,) [m/N], mirror (S,) the spring of the other side."""
+    """S springs: ends (S,2) point indices, compliance (S,) [m/N]."""
 
     ends: Ints
     compliance: Floats
-    mirror: Ints
 
     def lengths_of(self, points_m: Floats) -> Floats:
         """Distances (...,S) between the ends for points (...,16,3)."""
@@ -81,7 +79,4 @@ def build_springs(soft_waist: bool, compliances: Compliances) -> Springs:
         *((HIP[s], KNEE[s], c.bone) for s in both),
         *((KNEE[s], ANKLE[s], c.bone) for s in both),
     ]
-    ends = np.array([row[:2] for row in table])
-    place = {frozenset(pair): k for k, pair in enumerate(ends.tolist())}
-    mirror = np.array([place[frozenset(pair)] for pair in MIRROR[ends].tolist()])
-    return Springs(ends, np.array([row[2] for row in table]), mirror)
+    return Springs(np.array([row[:2] for row in table]), np.array([row[2] for row in table]))

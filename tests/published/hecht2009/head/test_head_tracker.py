@@ -8,10 +8,8 @@ import cv2
 import numpy as np
 import pytest
 
-from mocapd.body.head_proportions import MIDDLE
 from mocapd.published.hecht2009.face.lbp_cascade import read_cascade
 from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
-from mocapd.published.hecht2009.head.head_shape import face_of, joint_of, yaw_rotation
 from mocapd.published.hecht2009.head.head_track import (
     HeadPicture,
     HeadState,
@@ -152,7 +150,7 @@ def test_who_leaves_is_lost_and_who_comes_back_is_found_again(toy: CascadeArrays
     assert run(tracker, cameras, person, 2.0)[-1].state is HeadState.TRACKED
     gone = run(tracker, cameras, nobody, 3.5, 2.0)
     assert gone[-1].state is HeadState.LOST
-    assert gone[-1].joint_m is None
+    assert gone[-1].middle_m is None
     # nobody is made up for longer than it takes to be sure
     assert [track.state for track in gone].count(HeadState.TRACKED) <= 0.8 / DT_S
     back = run(tracker, cameras, person, 5.5, 3.5)
@@ -262,13 +260,3 @@ def test_furniture_that_is_moved_into_the_room_is_no_head() -> None:
     tracker = HeadTracker(cameras, STATURE_M, blind_cascade())
     tracks = run(tracker, cameras, box, 1.5, knows_background=True)
     assert {track.state for track in tracks} == {HeadState.LOST}
-
-
-def test_joint_and_face_are_where_the_skeleton_has_them() -> None:
-    middle = np.array([0.0, 1.6, 0.0])
-    joint = joint_of(middle, 2.0, 0.5 * np.pi)
-    assert np.allclose(joint, middle - 2.0 * np.array([MIDDLE[2], MIDDLE[1], 0.0]))
-    # one who looks to the own left looks along +X
-    assert face_of(middle, 2.0, 0.5 * np.pi)[0] > 0.1
-    assert np.allclose(joint_of(middle, 2.0, None), middle - (0.0, 2.0 * MIDDLE[1], 0.0))
-    assert np.allclose(yaw_rotation(0.5 * np.pi) @ (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
