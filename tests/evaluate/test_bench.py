@@ -99,6 +99,12 @@ def test_in_a_long_run_time_goes_on(recording: BenchInput) -> None:
     assert figures.minutes >= minutes
 
 
+def test_a_run_of_one_chunk_has_the_memory_of_each_quarter_too(recording: BenchInput) -> None:
+    figures = endure(ready(CannedTracker()), recording, 0.0, lambda done, total: None)
+    assert figures.sets == CHUNK
+    assert len(figures.rss_mb) == len(figures.median_ms) == 4
+
+
 def test_it_prints_one_object(clean_env: dict[str, str], tmp_path: Path) -> None:
     capture = write_capture(tmp_path / "office")
     words = ("bench", "--tracker", "canned", "--capture", capture, "--json")

@@ -65,7 +65,7 @@ def endure(
 
 def _figures(step_ms: Floats, rss: Floats) -> EnduranceFigures:
     quarters = [part for part in np.array_split(step_ms, 4) if len(part)]
-    memory = [part for part in np.array_split(rss, 4) if len(part)]
+    middles = rss[-1, 0] * (np.arange(4) + 0.5) / 4
     settled = rss[len(rss) // 2 :]
     slope = float(np.polyfit(settled[:, 0], settled[:, 1], 1)[0]) if len(settled) > 1 else 0.0
     return EnduranceFigures(
@@ -74,7 +74,7 @@ def _figures(step_ms: Floats, rss: Floats) -> EnduranceFigures:
         median_ms=tuple(float(np.median(part[:, 0])) for part in quarters),
         p95_ms=tuple(float(np.percentile(part[:, 0], 95.0)) for part in quarters),
         cpu_ms=tuple(float(np.median(part[:, 1])) for part in quarters),
-        rss_mb=tuple(float(np.median(part[:, 1])) for part in memory),
+        rss_mb=tuple(np.interp(middles, rss[:, 0], rss[:, 1]).tolist()),
         rss_slope_mb_per_min=slope,
     )
 
