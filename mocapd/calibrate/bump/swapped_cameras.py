@@ -6,7 +6,8 @@
   Of different cameras each must show the other's room; of identical ones, which are easily confused, one is enough.
 - The views of people (`consistency/`) fit: where the room gives no evidence.
 
-The latest evidence of a pair counts, and points of the room outweigh people.
+The latest evidence of a pair counts. What people show is compared with the points of the room again, which may take it
+back; people take nothing back that the points show.
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -103,7 +104,8 @@ class SwappedCameras:
             return
 
     def take_views(self, exchanged: Iterable[Collection[str]]) -> None:
-        """Evidence of people: all groups of cameras that a comparison of views found exchanged."""
+        """Evidence of people: all groups of cameras that a comparison of views found exchanged. It counts until the points
+        say otherwise, also against what they said before: the cameras may have changed places since."""
         groups = [set(names) for names in exchanged]
         for pair in self._pairs:
             if set(pair.names) in groups:
