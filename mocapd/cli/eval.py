@@ -90,6 +90,10 @@ def evaluate_captures(
     if out is not None:
         words = ["mocapd", "eval", *map(os.path.relpath, captures), "--tracker", name]
         words += ["--joints", joints.value] if joints is not Joints.UPPER else []
+        words += ["--config", os.path.relpath(config)] if config else []
+        # other settings change no score, and may hold a password
+        for key in settings or ():
+            words += ["--set", key] if key.startswith("tracker.") else []
         command = shlex.join([*words, "--out", os.path.relpath(out)])
         for path in score_page.write_page(out, results, name, joints.value, command, force):
             typer.echo(f"{path}: written", err=True)

@@ -47,6 +47,19 @@ def test_it_prints_a_table_and_writes_the_page(
     assert "mocapd eval small --tracker canned --out " in text
 
 
+def test_the_page_names_the_settings_that_its_scores_depend_on(
+    capture: Path, clean_env: dict[str, str], tmp_path: Path
+) -> None:
+    config = tmp_path / "hall.toml"
+    config.write_text("[tracker]\ncoast_s = 2.0\n")
+    settings = ("--config", config, "--set", "tracker.stature_m=1.9", "--set", "zenoh.port=7450")
+    words = ("eval", capture, "--tracker", "canned", "--out", tmp_path, *settings)
+    outcome = mocapd_here(clean_env, *words)
+    assert outcome.code == 0, outcome.err
+    text = (tmp_path / "evaluation.md").read_text()
+    assert re.search(r" --config \S*hall\.toml --set tracker\.stature_m=1\.9 --out ", text)
+
+
 def test_json_holds_the_same_figures_as_the_tables(
     capture: Path, clean_env: dict[str, str]
 ) -> None:
