@@ -48,9 +48,7 @@ def cases_of(
     """The recordings of these sets, those that are simulated made if need be. Raises InputError."""
     makers: dict[str, Callable[[], Iterator[GateCase]]] = {
         "dev": lambda: _dev(captures),
-        "half_rate": lambda: (
-            replace(one, set_name="half_rate", every=2) for one in _dev(captures)
-        ),
+        "half_rate": lambda: map(_at_half_rate, _dev(captures)),
         "shirt": lambda: _simulated("shirt", recorded_set.planned(clips), cache_dir, progress),
         "one_camera": lambda: _one_camera(captures, clips, cache_dir, progress),
         "plain": lambda: _simulated(
@@ -80,6 +78,17 @@ def _dev(captures: Path) -> Iterator[GateCase]:
     for folder in folders:
         joints = "full" if folder.name.startswith(_SCORED_WHOLE) else "upper"
         yield GateCase("dev", open_case(folder), joints)
+
+
+def _at_half_rate(one: GateCase) -> GateCase:
+    truth = one.case.truth
+    thinned = replace(
+        truth,
+        times_s=truth.times_s[::2],
+        joints_m=truth.joints_m[::2],
+        visible=truth.visible[::2],
+    )
+    return replace(one, set_name="half_rate", every=2, case=replace(one.case, truth=thinned))
 
 
 def _one_camera(
