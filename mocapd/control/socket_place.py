@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from mocapd.boundary.files import is_folder
+
 SYSTEM = Path("/run")  # where systemd puts the runtime directories of its services
 _ROOT = 0
 _LOOK = os.R_OK | os.X_OK
@@ -19,8 +21,8 @@ def socket_path(folder: Path, pid: int) -> Path:
 
 
 def sockets_in(folder: Path) -> tuple[Path, ...]:
-    """The sockets in a folder, stale ones included."""
-    return tuple(sorted(folder.glob("control-*.sock")))
+    """The sockets in a folder, stale ones included; none in a folder that another user has closed to us."""
+    return tuple(sorted(folder.glob("control-*.sock"))) if is_folder(folder) else ()
 
 
 def service_sockets(system: Path = SYSTEM) -> tuple[Path, ...]:

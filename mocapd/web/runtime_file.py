@@ -19,7 +19,7 @@ from urllib.parse import urlsplit, urlunsplit
 import msgspec
 from msgspec import Meta
 
-from mocapd.boundary.files import read_file
+from mocapd.boundary.files import is_folder, read_file
 from mocapd.boundary.parsing import decode_json
 from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError, mend_of
 from mocapd.outputs.http_answer import read_body
@@ -106,9 +106,10 @@ def withdraw(folder: Path) -> None:
 
 
 def running(folder: Path) -> tuple[Running, ...]:
-    """The announced pages that answer, by process id; removes files of ended processes."""
+    """The announced pages that answer, by process id; removes files of ended processes. None in a folder that another
+    user has closed to us."""
     pages = []
-    for path in folder.glob("page-*.json"):
+    for path in folder.glob("page-*.json") if is_folder(folder) else ():
         said = _valid_announcement(path)
         if said is None:
             _remove(path)

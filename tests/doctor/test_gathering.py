@@ -13,7 +13,9 @@ import pytest
 
 from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.calibration.calibration_writing import write_calibration
+from mocapd.config.runtime_folder import runtime_folder
 from mocapd.config.sections import CameraSection, Config, WebSection
+from mocapd.control.socket_place import sockets_in
 from mocapd.doctor.checks.storage_checks import check_ports
 from mocapd.doctor.checks.system_checks import check_ownership
 from mocapd.doctor.facts import PreparationFacts, UserFacts
@@ -32,6 +34,7 @@ from mocapd.doctor.gathering.system_facts import (
 from mocapd.file_lock import one_at_a_time
 from mocapd.outputs.output_table import ZenohSection
 from mocapd.session.prepared_marker import LOCK, remember
+from mocapd.web.runtime_file import running
 from tests.calibration.test_calibration_file import pictures, saved_calibration
 from tests.cli.mocapd_process import Outcome, mocapd_here
 
@@ -83,6 +86,19 @@ def test_folders_are_looked_at_and_not_made(
     assert state.open_to_others
     assert cache.trouble is not None
     assert "can be written by others" in cache.trouble.what
+
+
+def test_a_runtime_folder_that_may_not_be_looked_into_ends_no_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # such as that of the user from whom `su` was called; too long a name fails alike, and for root as well
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / ("x" * 300)))
+    monkeypatch.delenv("RUNTIME_DIRECTORY", raising=False)
+    folder = runtime_folder(tmp_path)
+    assert sockets_in(folder) == ()
+    assert running(folder) == ()
+    *_, runtime = folder_facts(Config(cache_dir=tmp_path, state_dir=tmp_path))
+    assert runtime.path == folder
 
 
 def test_who_has_a_port_that_is_wanted() -> None:

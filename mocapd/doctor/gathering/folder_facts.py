@@ -5,6 +5,7 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
+from mocapd.boundary.files import is_folder
 from mocapd.boundary.folders import readable_by_others, require_own_folder
 from mocapd.config.runtime_folder import runtime_folder
 from mocapd.config.sections import Config
@@ -47,6 +48,6 @@ def _folder(key: str, path: Path, runs_from_it: bool = False) -> FolderFacts:
 def _nearest(path: Path) -> Path:
     """The folder, else its nearest existing parent."""
     for folder in (path, *path.parents):
-        if folder.is_dir():
+        if is_folder(folder):
             return folder
     return Path("/")
