@@ -14,6 +14,7 @@ from mocapd.errors import CannotCreateError, InputError, PermissionDeniedError, 
 from mocapd.whole_file import whole_file
 
 MODE = 0o644
+FOLDER_MODE = 0o755
 SECRET_MODE = 0o640  # with the group of the service that reads it
 NEW = ".new"  # suffix of our version of a file that was changed by hand
 
@@ -118,7 +119,9 @@ def _read(path: Path) -> bytes | None:
 
 def _write(path: Path, data: bytes, mode: int = MODE, gid: int | None = None) -> None:
     with _named_errors(path):
-        path.parent.mkdir(mode=0o755, parents=True, exist_ok=True)
+        if not path.parent.is_dir():
+            path.parent.mkdir(parents=True)
+            path.parent.chmod(FOLDER_MODE)  # whatever the umask: the service has a user of its own
         with whole_file(path) as partial:
             partial.write_bytes(data)
             if gid is not None and os.geteuid() == 0:

@@ -37,6 +37,17 @@ def test_installed_twice_is_as_installed_once(tmp_path: Path) -> None:
     assert {*modes.values()} == {0o644}
 
 
+def test_the_service_may_enter_the_folder_of_its_configuration_whatever_the_umask(
+    tmp_path: Path,
+) -> None:
+    before = os.umask(0o077)
+    try:
+        install(InstallTarget(root=tmp_path))
+    finally:
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / CONFIG).parent.stat().st_mode) == 0o755
+
+
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root gives files away")
 def test_the_configuration_is_of_the_services_group_at_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
