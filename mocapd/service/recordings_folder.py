@@ -9,7 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Annotated
+from typing import Annotated, BinaryIO
 
 import msgspec
 from msgspec import Meta
@@ -139,13 +139,24 @@ class Recordings:
             raise InputError("there is no such recording", "recordings", "reload the page")
         return path
 
+    def opened(self, id_: str) -> BinaryIO:
+        """A recording, open to be read. Raises InputError."""
+        path = self.file(id_)
+        try:
+            return path.open("rb")
+        except OSError as error:
+            raise InputError(
+                f"cannot be read ({error.strerror})", str(path), "check its rights, and the disk"
+            ) from None
+
     def file_name(self, id_: str, suffix: str) -> str:
         """The file name for the browser: the recording's name, else its id."""
         name = re.sub(r"[^A-Za-z0-9._-]+", "-", self._read(id_).name).strip("-.")
         return f"{name or f'mocapd-{id_}'}.{suffix}"
 
-    def export(self, id_: str, format_: str) -> bytes:
-        """Converts a recording, in a process of its own so that tracking goes on. Raises InputError."""
+    def export(self, id_: str, format_: str) -> BinaryIO:
+        """Converts a recording, in a process of its own so that tracking goes on; the result is open to be read, and gone
+        once it is closed. Raises InputError."""
         path = self.file(id_)
         if format_ not in FORMATS:
             raise InputError("there is no such format", "recordings", "reload the page")
@@ -168,7 +179,7 @@ class Recordings:
                 raise InputError(
                     lines[-1][:300] if lines else "the export failed", id_, "use `mocapd export`"
                 )
-            return out.read_bytes()
+            return out.open("rb")
 
     def _read(self, id_: str) -> Note:
         """The note; empty without a readable file, as the recording stays usable."""

@@ -5,11 +5,13 @@ the error (503). GET recordings/ID: the file; GET recordings/ID/FORMAT: exported
 direction forward.
 """
 
-from typing import Literal
+import os
+from collections.abc import Iterator
+from typing import BinaryIO, Literal
 
 import msgspec
 from starlette.requests import Request
-from starlette.responses import Response
+from starlette.responses import Response, StreamingResponse
 from starlette.routing import Route
 
 from mocapd.errors import UnavailableError
@@ -17,6 +19,7 @@ from mocapd.service.recordings_folder import Name, Notes, Recordings
 from mocapd.web.answers import answer, json_answer, read_request
 from mocapd.web.host import Host
 
+_PART_BYTES = 1 << 18  # of a download
 _MEDIA_TYPES = {"bvh": "text/plain", "csv": "text/csv", "trc": "text/plain"}
 
 
@@ -68,9 +71,9 @@ class RecordingRoutes:
         id_ = request.path_params["id"]
 
         def read() -> Response:
-            data = self._recordings.file(id_).read_bytes()
+            file = self._recordings.opened(id_)
             name = self._recordings.file_name(id_, "mcap")
-            return _download(data, name, "application/octet-stream")
+            return _download(file, name, "application/octet-stream")
 
         return await answer(read)
 
@@ -78,9 +81,9 @@ class RecordingRoutes:
         id_, format_ = request.path_params["id"], request.path_params["format"]
 
         def export() -> Response:
-            data = self._recordings.export(id_, format_)
+            file = self._recordings.export(id_, format_)
             name = self._recordings.file_name(id_, format_)
-            return _download(data, name, _MEDIA_TYPES.get(format_, "application/octet-stream"))
+            return _download(file, name, _MEDIA_TYPES.get(format_, "application/octet-stream"))
 
         return await answer(export)
 
@@ -100,6 +103,19 @@ class RecordingRoutes:
         return found
 
 
-def _download(data: bytes, name: str, media_type: str) -> Response:
-    headers = {"content-disposition": f'attachment; filename="{name}"'}
-    return Response(data, media_type=media_type, headers=headers)
+def _download(file: BinaryIO, name: str, media_type: str) -> Response:
+    """Sends the open file in parts, then closes it: that of a long recording is larger than the memory of the service."""
+    size_bytes = os.fstat(file.fileno()).st_size
+    headers = {
+        "content-disposition": f'attachment; filename="{name}"',
+        "content-length": str(size_bytes),
+    }
+    return StreamingResponse(_parts(file, size_bytes), media_type=media_type, headers=headers)
+
+
+def _parts(file: BinaryIO, size_bytes: int) -> Iterator[bytes]:
+    """The first `size_bytes` of the file: one that is still being recorded grows meanwhile."""
+    with file:
+        while size_bytes > 0 and (part := file.read(min(size_bytes, _PART_BYTES))):
+            size_bytes -= len(part)
+            yield part

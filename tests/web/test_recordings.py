@@ -1,8 +1,11 @@
 """Record and stop from the page: what is written, listed, named, downloaded and exported."""
 
+import errno
+import io
 import json
 import re
 import stat
+import tracemalloc
 from pathlib import Path
 
 import httpx
@@ -78,6 +81,40 @@ def test_it_is_exported_from_the_page(host: TinyHost, server: WebServer) -> None
     assert answer.status_code == 200, answer.text
     assert answer.text.startswith("time_s,gap,")
     assert answer.text.count("\n") > BODIES // 2
+
+
+def test_a_long_recording_is_never_whole_in_memory(
+    host: TinyHost, server: WebServer, tmp_path: Path
+) -> None:
+    path = tmp_path / "recordings" / "20260101-000000.mcap"
+    path.parent.mkdir()
+    with path.open("wb") as file:
+        file.truncate(64 << 20)
+    tracemalloc.start()
+    try:
+        url = f"{origin_of(server)}/recordings/{path.stem}"
+        with httpx.stream("GET", url, params={"token": token_of(server)}, trust_env=False) as got:
+            assert sum(map(len, got.iter_raw())) == path.stat().st_size
+        assert tracemalloc.get_traced_memory()[1] < 16 << 20
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_recording_that_cannot_be_read_ends_nothing(
+    server: WebServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "recordings" / "20260101-000000.mcap"
+    path.parent.mkdir()
+    path.touch()
+
+    def refuse(*_: object) -> None:
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    monkeypatch.setattr(io, "open", refuse)
+    answer = get(server, f"/recordings/{path.stem}", token=token_of(server))
+    monkeypatch.undo()
+    assert answer.status_code == 503
+    assert answer.json()["what"] == "cannot be read (Permission denied)"
 
 
 @pytest.mark.parametrize(
