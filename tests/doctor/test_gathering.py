@@ -88,6 +88,16 @@ def test_folders_are_looked_at_and_not_made(
     assert "can be written by others" in cache.trouble.what
 
 
+def test_what_lies_in_a_folders_place_is_a_trouble(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    (tmp_path / "unmounted").symlink_to(tmp_path / "nowhere")
+    for path in (tmp_path / "file", tmp_path / "unmounted", tmp_path / "file" / "mocapd"):
+        cache, state, _ = folder_facts(Config(cache_dir=path, state_dir=path))
+        for facts in (cache, state):
+            assert facts.trouble is not None
+            assert "is no folder" in facts.trouble.what
+
+
 def test_a_runtime_folder_that_may_not_be_looked_into_ends_no_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -29,7 +29,9 @@ def folder_facts(config: Config) -> tuple[FolderFacts, ...]:
 def _folder(key: str, path: Path, runs_from_it: bool = False) -> FolderFacts:
     there = _nearest(path)
     trouble = None
-    if runs_from_it and there == path:
+    if not is_folder(there):
+        trouble = FactTrouble(f"{there} is no folder", f"move it away, or set {key} to another")
+    elif runs_from_it and there == path:
         try:
             require_own_folder(path)
         except MocapdError as error:
@@ -46,8 +48,5 @@ def _folder(key: str, path: Path, runs_from_it: bool = False) -> FolderFacts:
 
 
 def _nearest(path: Path) -> Path:
-    """The folder, else its nearest existing parent."""
-    for folder in (path, *path.parents):
-        if is_folder(folder):
-            return folder
-    return Path("/")
+    """The folder or what is there in its place, else its nearest existing parent."""
+    return next(part for part in (path, *path.parents) if os.path.lexists(part))
