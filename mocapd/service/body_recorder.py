@@ -34,10 +34,11 @@ class BodyRecorder:
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name="page-recording", daemon=True)
         self._began_s = time.monotonic()
+        self._ended_s: float | None = None
         self._skeleton: Skeleton | None = None  # the last one written
         self._seq = 0
         self.lost = 0  # bodies dropped because of a slow disk
-        self.trouble = ""  # why writing has stopped
+        self.error: CannotCreateError | None = None  # why writing has stopped
 
     def __enter__(self) -> Self:
         self._thread.start()
@@ -46,6 +47,7 @@ class BodyRecorder:
 
     def __exit__(self, *_: object) -> None:
         self._bodies.leave(self)
+        self._stop_time()
         self._over.set()
         self._thread.join()
 
@@ -70,8 +72,11 @@ class BodyRecorder:
 
     @property
     def length_s(self) -> float:
-        """Since it began [s]."""
-        return time.monotonic() - self._began_s
+        """Since it began, until its end or until it could not be written any further [s]."""
+        return (self._ended_s or time.monotonic()) - self._began_s
+
+    def _stop_time(self) -> None:
+        self._ended_s = self._ended_s or time.monotonic()
 
     def _run(self) -> None:
         try:
@@ -82,7 +87,8 @@ class BodyRecorder:
                         self._write(self._waiting.get(timeout=_LOOK_S))
                     self._writer.flush_if_due(monotonic_ns())
         except CannotCreateError as error:
-            self.trouble = str(error)
+            self._stop_time()
+            self.error = error
 
     def _write(self, sample: BodySample) -> None:
         now_ns, unix_ns = monotonic_ns(), unix_from_monotonic_ns()

@@ -95,14 +95,15 @@ class Recordings:
             self._recorder = self._begin(path).__enter__()
 
     def stop(self) -> None:
-        """Ends the recording in progress, if any. Raises CannotCreateError."""
+        """Ends the recording in progress, if any. Raises CannotCreateError, also where its end is missing."""
         with self._lock:
             recorder, self._recorder = self._recorder, None
             if recorder is None:
                 return
-            length_s = recorder.length_s
             recorder.__exit__()
-            self._write(recorder.path.stem, Note(length_s=round(length_s, 1)))
+            self._write(recorder.path.stem, Note(length_s=round(recorder.length_s, 1)))
+            if recorder.error is not None:
+                raise recorder.error
 
     close = stop
 
@@ -117,9 +118,8 @@ class Recordings:
         recorder = self._recorder
         now = None
         if recorder is not None:
-            now = NowRecording(
-                recorder.path.stem, recorder.length_s, recorder.frames, recorder.trouble
-            )
+            trouble = "" if recorder.error is None else str(recorder.error)
+            now = NowRecording(recorder.path.stem, recorder.length_s, recorder.frames, trouble)
         paths = sorted(self.folder.glob("*.mcap"), reverse=True)[:MOST_LISTED]
         rows = []
         for path in paths:

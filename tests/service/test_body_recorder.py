@@ -1,8 +1,10 @@
 """The recorder behind the page's button: what it holds while the disk is slow."""
 
 import gc
+import time
 import weakref
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -11,10 +13,36 @@ from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.errors import CannotCreateError
 from mocapd.outputs.mcap.recording_writer import RecordingWriter
 from mocapd.pipeline.body_hub import BodyHub, BodySample
+from mocapd.service import body_recorder
 from mocapd.service.body_recorder import BodyRecorder
+from mocapd.service.recordings_folder import Recordings
 from mocapd.tracking.base import Track, lost_body
 from mocapd.types import Frame, FrameSet
+from tests.outputs.frames import eventually
 from tests.pipeline.free_running import PIXELS
+
+
+def test_what_a_full_disk_has_cut_off_is_told_at_the_end_and_its_length_is_that_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise CannotCreateError("cannot be written any further", "it", "make room")
+
+    def begin(path: Path) -> BodyRecorder:
+        return BodyRecorder(BodyHub(), path, RecordingMetadata(), "pc")
+
+    now_s = 100.0
+    clock = SimpleNamespace(time_ns=time.time_ns, monotonic=lambda: now_s)
+    monkeypatch.setattr(body_recorder, "time", clock)
+    monkeypatch.setattr(RecordingWriter, "attach", full)
+    recordings = Recordings(tmp_path, begin)
+    recordings.start()
+    assert eventually(lambda: (now := recordings.list().now) is not None and now.trouble != "")
+    now_s = 3700.0
+    with pytest.raises(CannotCreateError, match="any further"):
+        recordings.stop()
+    (one,) = recordings.list().recordings
+    assert one.length_s == 0.0
 
 
 def test_a_full_disk_holds_no_pictures_in_memory(
