@@ -2,6 +2,7 @@
 
 import errno
 import gc
+import io
 import os
 import sys
 from pathlib import Path
@@ -33,6 +34,9 @@ def main() -> None:
     from mocapd.errors import CannotCreateError, MocapdError
 
     interruptible(sys.argv)
+    if isinstance(sys.stdout, io.TextIOWrapper):  # None where it is closed
+        # as stderr does: a terminal whose letters are not those of a path or of a camera's name ends no command
+        sys.stdout.reconfigure(errors="backslashreplace")
     ready_to_complete()
     try:
         refuse_removed_options(sys.argv[1:])

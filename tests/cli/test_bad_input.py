@@ -72,6 +72,13 @@ def test_output_to_a_full_disk(clean_env: dict[str, str], unbuffered: str) -> No
     assert_one_line(Outcome(done.returncode, "", done.stderr), 73, "No space left", "make room")
 
 
+def test_output_to_a_terminal_without_the_letters(clean_env: dict[str, str]) -> None:
+    env = {**clean_env, "PYTHONIOENCODING": "ascii"}
+    outcome = mocapd(env, "check-config", "--changed", "--set", "instance=Küche")
+    assert outcome.code == 0, outcome.err
+    assert r"K\xfcche" in outcome.out
+
+
 def test_output_to_a_reader_that_is_gone(clean_env: dict[str, str]) -> None:
     there, gone = os.pipe()
     os.close(there)
