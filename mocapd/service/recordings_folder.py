@@ -14,8 +14,9 @@ from typing import Annotated, BinaryIO
 import msgspec
 from msgspec import Meta
 
-from mocapd.boundary.files import read_text
+from mocapd.boundary.files import is_file, read_text
 from mocapd.boundary.folders import private_folder
+from mocapd.boundary.listing import shown_in
 from mocapd.boundary.parsing import decode_json
 from mocapd.child_process import child_command
 from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError, mend_of
@@ -114,15 +115,15 @@ class Recordings:
         self._write(id_, msgspec.structs.replace(before, name=name, notes=notes))
 
     def list(self) -> RecordingList:
-        """All recordings; empty without a folder."""
+        """All recordings; empty without a folder. Raises InputError for one that cannot be listed."""
         recorder = self._recorder
         now = None
         if recorder is not None:
             trouble = "" if recorder.error is None else str(recorder.error)
             now = NowRecording(recorder.path.stem, recorder.length_s, recorder.frames, trouble)
-        paths = sorted(self.folder.glob("*.mcap"), reverse=True)[:MOST_LISTED]
+        paths = [path for path in shown_in(self.folder) if path.suffix == ".mcap"]
         rows = []
-        for path in paths:
+        for path in paths[::-1][:MOST_LISTED]:
             if _ID.fullmatch(path.stem) and (now is None or path.stem != now.id):
                 note = self._read(path.stem)
                 with suppress(OSError):
@@ -135,7 +136,7 @@ class Recordings:
     def file(self, id_: str) -> Path:
         """The path of a recording. Raises InputError for an unknown one."""
         path = self.folder / f"{id_}.mcap"
-        if not _ID.fullmatch(id_) or not path.is_file():
+        if not _ID.fullmatch(id_) or not is_file(path):
             raise InputError("there is no such recording", "recordings", "reload the page")
         return path
 

@@ -142,6 +142,17 @@ def test_two_at_once_are_refused_and_garbage_is_not_understood(
     host.made.close()
 
 
+def test_a_folder_that_cannot_be_looked_into_ends_nothing(
+    host: TinyHost, server: WebServer, tmp_path: Path
+) -> None:
+    # as of a state directory on a disk that is gone; too long a name fails alike, and for root as well
+    assert host.made is not None
+    host.made.folder = tmp_path / ("x" * 300)
+    assert get(server, "/recordings", token=token_of(server)).json()["recordings"] == []
+    file = get(server, "/recordings/20260101-000000", token=token_of(server))
+    assert (file.status_code, file.json()["what"]) == (503, "there is no such recording")
+
+
 def test_a_host_without_recordings_says_so(host: TinyHost, server: WebServer) -> None:
     host.made = None
     answer = get(server, "/recordings", token=token_of(server))
