@@ -157,30 +157,19 @@ class Recordings:
 
     def export(self, id_: str, format_: str) -> BinaryIO:
         """Converts a recording, in a process of its own so that tracking goes on; the result is open to be read, and gone
-        once it is closed. Raises InputError."""
+        once it is closed. Raises InputError, CannotCreateError."""
         path = self.file(id_)
         if format_ not in FORMATS:
             raise InputError("there is no such format", "recordings", "reload the page")
-        with TemporaryDirectory(prefix="mocapd-export-") as folder:
-            out = Path(folder) / f"{id_}.{format_}"
-            words = ("export", str(path), "--to", format_, "--out", str(out))
-            command = child_command("from mocapd.cli.main import main; main()", *words)
-            # an export has no use for the daemon's configuration
-            env = {name: value for name, value in os.environ.items() if name[:7] != "MOCAPD_"}
-            try:
-                done = subprocess.run(
-                    command, capture_output=True, text=True, check=False, timeout=_EXPORT_S, env=env
-                )
-            except subprocess.TimeoutExpired:
-                raise InputError(
-                    f"takes more than {_EXPORT_S:.0f} s", id_, "use `mocapd export`"
-                ) from None
-            if done.returncode != 0 or not out.is_file():
-                lines = done.stderr.strip().splitlines()
-                raise InputError(
-                    lines[-1][:300] if lines else "the export failed", id_, "use `mocapd export`"
-                )
-            return out.open("rb")
+        try:
+            with TemporaryDirectory(prefix="mocapd-export-") as folder:
+                return _exported(path, Path(folder) / f"{id_}.{format_}")
+        except OSError as error:
+            raise CannotCreateError(
+                f"the export cannot be made ({error.strerror})",
+                str(error.filename or id_),
+                mend_of(error, "use `mocapd export`"),
+            ) from None
 
     def _read(self, id_: str) -> Note:
         """The note; empty without a readable file, as the recording stays usable."""
@@ -201,3 +190,25 @@ class Recordings:
                 str(path),
                 mend_of(error, "make room there"),
             ) from None
+
+
+def _exported(path: Path, out: Path) -> BinaryIO:
+    """The recording in the format of `out`'s suffix. Raises InputError, OSError."""
+    words = ("export", str(path), "--to", out.suffix[1:], "--out", str(out))
+    command = child_command("from mocapd.cli.main import main; main()", *words)
+    # an export has no use for the daemon's configuration
+    env = {name: value for name, value in os.environ.items() if name[:7] != "MOCAPD_"}
+    try:
+        done = subprocess.run(
+            command, capture_output=True, text=True, check=False, timeout=_EXPORT_S, env=env
+        )
+    except subprocess.TimeoutExpired:
+        raise InputError(
+            f"takes more than {_EXPORT_S:.0f} s", path.stem, "use `mocapd export`"
+        ) from None
+    if done.returncode != 0 or not out.is_file():
+        lines = done.stderr.strip().splitlines()
+        raise InputError(
+            lines[-1][:300] if lines else "the export failed", path.stem, "use `mocapd export`"
+        )
+    return out.open("rb")

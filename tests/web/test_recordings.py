@@ -5,6 +5,7 @@ import io
 import json
 import re
 import stat
+import tempfile
 import tracemalloc
 from pathlib import Path
 
@@ -115,6 +116,16 @@ def test_a_recording_that_cannot_be_read_ends_nothing(
     monkeypatch.undo()
     assert answer.status_code == 503
     assert answer.json()["what"] == "cannot be read (Permission denied)"
+
+
+def test_an_export_without_room_for_it_ends_nothing(
+    host: TinyHost, server: WebServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one = recorded(host, server)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "gone"))
+    answer = get(server, f"/recordings/{one['id']}/csv", token=token_of(server))
+    assert answer.status_code == 503
+    assert "the export cannot be made" in answer.json()["what"]
 
 
 @pytest.mark.parametrize(
