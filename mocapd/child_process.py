@@ -31,7 +31,8 @@ def end_with_parent(parent_pid: int, number: int) -> None:
 def child_command(program: str, *arguments: str) -> list[str]:
     """The command line of a Python process that gets SIGTERM at the end of the calling process.
 
-    program: Python statements, with `sys` imported; arguments: its `sys.argv[1:]`.
+    program: Python statements, with `sys` imported; arguments: its `sys.argv[1:]`. -P: no imports from the working
+    directory, which may be anybody's.
     """
     began = str(os.getpid()), str(int(signal.SIGTERM))
-    return [sys.executable, "-c", _BEGIN + program, *began, *arguments]
+    return [sys.executable, "-P", "-c", _BEGIN + program, *began, *arguments]

@@ -68,6 +68,12 @@ def test_no_program_of_ours_starts_another_one_that_may_outlive_it() -> None:
 
 def test_a_child_that_asks_after_its_parents_end_ends_at_once(tmp_path: Path) -> None:
     command = child_command("open('began', 'w')")
-    command[3] = str(os.getppid())  # not this process, which starts it
+    command[4] = str(os.getppid())  # not this process, which starts it
     assert subprocess.run(command, cwd=tmp_path, check=False).returncode == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_child_runs_nothing_of_the_folder_in_which_it_is_started(tmp_path: Path) -> None:
+    (tmp_path / "msgspec.py").write_text("raise SystemExit('of the working directory')")
+    done = subprocess.run(child_command("import msgspec"), cwd=tmp_path, check=False)
+    assert done.returncode == 0
