@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import pytest
 
 from mocapd.app.install.installing import InstallTarget, install
 from mocapd.config.effective import load_config
+from tests.conftest import ROOT
 
 TIGHT_ENOUGH = "20"  # in tenths: 2.0 of 10, "OK"
 UNITS = (
@@ -154,3 +156,10 @@ def test_each_key_of_the_sample_is_one_when_it_is_taken_up(package: Path, tmp_pa
     effective = load_config(file=config, env={})
     changed = {one.key.path for one in effective.settings if one.is_changed}
     assert {"camera", "tracker.stature_m", "zenoh.port", "vmc.enabled"} <= changed
+
+
+def test_each_unit_is_stopped_before_its_package_is_removed() -> None:
+    """Of the user of one that still runs, a purge could take neither the cache nor the user."""
+    script = (ROOT / "deb/prerm").read_text().splitlines()
+    (words,) = (shlex.split(line) for line in script if line.strip().startswith("systemctl stop"))
+    assert {*words[2:]} == {unit.replace("@.", "@*.") for unit in UNITS}
