@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated, BinaryIO
@@ -14,7 +15,7 @@ from typing import Annotated, BinaryIO
 import msgspec
 from msgspec import Meta
 
-from mocapd.boundary.files import is_file, read_text
+from mocapd.boundary.files import is_absent, is_file, read_text
 from mocapd.boundary.folders import private_folder
 from mocapd.boundary.listing import shown_in
 from mocapd.boundary.parsing import decode_json
@@ -92,8 +93,13 @@ class Recordings:
                     str(self.folder),
                     mend_of(error, "make room there"),
                 ) from None
-            path = self.folder / f"{time.strftime('%Y%m%d-%H%M%S')}.mcap"
-            self._recorder = self._begin(path).__enter__()
+            self._recorder = self._begin(self._new_path()).__enter__()
+
+    def _new_path(self) -> Path:
+        """Named by the time; by the next free second after another one of this second, or after the clock was set back."""
+        seconds = map(time.localtime, count(int(time.time())))
+        paths = (self.folder / f"{time.strftime('%Y%m%d-%H%M%S', now)}.mcap" for now in seconds)
+        return next(filter(is_absent, paths))
 
     def stop(self) -> None:
         """Ends the recording in progress, if any. Raises CannotCreateError, also where its end is missing."""

@@ -6,6 +6,7 @@ import json
 import re
 import stat
 import tempfile
+import time
 import tracemalloc
 from pathlib import Path
 
@@ -64,6 +65,18 @@ def test_what_is_recorded_is_a_recording_like_any_other(
     answer = get(server, f"/recordings/{one['id']}", token=token_of(server))
     assert answer.content == path.read_bytes()
     assert re.search(r'attachment; filename="mocapd-\d{8}-\d{6}\.mcap"', str(answer.headers))
+
+
+def test_one_may_begin_in_the_second_of_another(host: TinyHost) -> None:
+    """Also where the clock was set back: here by ten minutes, in each second of which one was begun."""
+    assert host.made is not None
+    host.made.folder.mkdir()
+    for second in range(600):
+        name = time.strftime("%Y%m%d-%H%M%S", time.localtime(time.time() + second))
+        (host.made.folder / f"{name}.mcap").touch()
+    host.made.start()
+    host.made.stop()
+    assert host.made.list().recordings[0].size_bytes > 0
 
 
 def test_name_and_notes_are_kept_and_name_the_download(host: TinyHost, server: WebServer) -> None:
