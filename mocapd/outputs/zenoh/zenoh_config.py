@@ -12,6 +12,7 @@ from typing import Annotated, Any
 
 from msgspec import Meta
 
+from mocapd.boundary.files import is_file
 from mocapd.bus.zenoh_limits import receive_limits, unicast_limits
 from mocapd.errors import ConfigError
 from mocapd.outputs.zenoh.zenoh_password_file import check_password_file
@@ -71,7 +72,7 @@ class Params:
             self._check_listen(endpoint)
         for name in ("tls_certificate", "tls_private_key", "tls_root_ca", "password_file"):
             path = str(getattr(self, name))
-            _require(not path or _is_file(path), name, path, "a file that exists")
+            _require(not path or is_file(Path(path)), name, path, "a file that exists")
         if self.password_file:
             check_password_file(Path(self.password_file))
         _require(
@@ -120,13 +121,6 @@ def is_loopback(endpoint: str) -> bool:
         return ipaddress.ip_address(address).is_loopback
     except ValueError:
         return False  # a name: it may resolve to any address
-
-
-def _is_file(path: str) -> bool:
-    try:
-        return Path(path).is_file()
-    except OSError:  # too long, or in a folder without permission
-        return False
 
 
 def _require(holds: bool, key: str, value: object, wanted: str) -> None:
