@@ -34,7 +34,7 @@ def default_state_dir() -> Path:
 
 @dataclass(frozen=True, slots=True)
 class ControlsSection(Controls):
-    """Controls of a webcam; a missing value stays the camera's own.
+    """Controls of a webcam; a missing value is as the setup locked it, else the camera's own.
 
     auto_exposure, auto_wb, autofocus: true: the camera sets it automatically
     exposure: in the camera's unit, mostly 100 us

@@ -18,6 +18,7 @@ from mocapd.calibration.from_origin import from_origin
 from mocapd.calibration.saved_sources import require_password
 from mocapd.capture.kinds.source_kinds import cameras_of_origin, common_origin, open_origin
 from mocapd.capture.origin import camera_address
+from mocapd.capture.webcam.controls import Controls
 from mocapd.config.sections import CameraSection, Config, ControlsSection
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
@@ -143,10 +144,15 @@ def cameras_of(capture: str) -> tuple[CameraSection, ...]:
 def session_cameras(
     configured: tuple[CameraSection, ...], saved: LoadedCalibration | None, state_dir: Path
 ) -> tuple[CameraSection, ...]:
-    """The configured cameras, else the calibrated ones. Raises ConfigError where there are none, or a password is
-    missing."""
+    """The configured cameras, else the calibrated ones. Controls that the configuration leaves open are as the setup
+    locked them: a lens holds for one focus, colours for one exposure. Raises ConfigError where there are none, or a
+    password is missing."""
     if configured:
-        return configured
+        locked = {} if saved is None else {one.id: one.controls for one in saved.tables.camera}
+        return tuple(
+            replace(one, controls=_overlaid(locked.get(one.id, Controls()), one.controls))
+            for one in configured
+        )
     if saved is None:
         raise ConfigError(
             "no camera is configured, and no calibration is saved",
@@ -164,6 +170,11 @@ def session_cameras(
         )
         for camera in saved.tables.camera
     )
+
+
+def _overlaid(locked: Controls, configured: Controls) -> ControlsSection:
+    given = {name: value for name, value in asdict(configured).items() if value is not None}
+    return ControlsSection(**asdict(locked) | given)
 
 
 def _configured_shirt(model: Path | None, cameras: Iterable[CameraSection]) -> ShirtColours:

@@ -20,7 +20,7 @@ from mocapd.calibration.calibration_writing import write_calibration
 from mocapd.calibration.saved_sources import SECRETS
 from mocapd.capture.capture_folder import load_folder
 from mocapd.capture.kinds.folder_kind import FolderOrigin
-from mocapd.config.sections import CameraSection, Config, TrackerSection
+from mocapd.config.sections import CameraSection, Config, ControlsSection, TrackerSection
 from mocapd.errors import ConfigError, InputError
 from mocapd.session.session import cameras_of, open_session, session_cameras
 from mocapd.wizard.saving import save_draft
@@ -77,6 +77,12 @@ def test_configured_cameras_that_were_calibrated_take_the_rest_from_there(config
     session = open_session(replace(config, camera=(moved,)), quiet)
     assert [(one.spec, one.expected_hz) for one in session.cameras] == [(moved.source, 15.0)]
     assert session.rig is not None
+
+
+def test_configured_cameras_keep_the_controls_that_the_setup_locked(config: Config) -> None:
+    gained = CameraSection("cam1", source_of("cam1", "4-4"), controls=ControlsSection(gain=7))
+    (camera,) = session_cameras((gained,), saved_for(config), config.state_dir)
+    assert camera.controls == ControlsSection(exposure=150, gain=7)
 
 
 def test_other_cameras_do_not_take_it(config: Config, caplog: pytest.LogCaptureFixture) -> None:
