@@ -2,6 +2,7 @@
 
 import grp
 import os
+import shlex
 import stat
 from pathlib import Path
 
@@ -32,12 +33,16 @@ def narrowing(path: Path) -> str:
         is_ours = True
     if os.geteuid() == 0 and path.absolute().parent == SERVICE_FOLDER:
         return _for_group(path, SERVICE_GROUPS[path.name == _NODE_CONFIG])
-    return f"chmod 600 {path}" if is_ours else _for_group(path, _group_name(os.getegid()))
+    return (
+        f"chmod 600 {shlex.quote(str(path))}"
+        if is_ours
+        else _for_group(path, _group_name(os.getegid()))
+    )
 
 
 def _for_group(path: Path, group: str) -> str:
-    sudo = "" if os.geteuid() == 0 else "sudo "
-    return f"{sudo}chown root:{group} {path} && {sudo}chmod 640 {path}"
+    sudo, quoted = "" if os.geteuid() == 0 else "sudo ", shlex.quote(str(path))
+    return f"{sudo}chown root:{group} {quoted} && {sudo}chmod 640 {quoted}"
 
 
 def _group_name(gid: int) -> str:

@@ -1,10 +1,12 @@
 """Each thing that the doctor finds wrong is told with what mends it, and nothing is said of what is well."""
 
+import shlex
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from mocapd.boundary.secret_files import narrowing
 from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.usb_bandwidth import CrowdedBus
 from mocapd.capture.webcam.v4l2_ioctl import PixelFormat
@@ -142,6 +144,13 @@ def test_folders(facts: FolderFacts, verdict: Verdict, says: str) -> None:
     found = check_folder(facts)
     assert found.verdict is verdict
     assert says in f"{found.what} {found.fix}"
+
+
+def test_commands_name_a_path_with_a_space_as_one_word() -> None:
+    path = Path("/srv/motion capture/state")
+    found = check_folder(FolderFacts("state_dir", path, None, True, None))
+    for command in (found.fix, narrowing(path)):
+        assert shlex.split(command)[-1] == str(path)
 
 
 GOOD = CalibrationFacts(Path("c.toml"), None, 3 * DAY_S, 0.3, 0.8, 2)

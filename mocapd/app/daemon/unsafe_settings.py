@@ -1,5 +1,6 @@
 """Unsafe settings of a configuration: one line each, for the log and `check-config`."""
 
+import shlex
 import stat
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -63,13 +64,13 @@ def _state(folder: Path) -> list[str]:
     if readable_by_others(folder):
         lines.append(
             f"{folder} may hold pictures of the wearer, and others may look into it"
-            f" ({_mode(folder)}): `chmod 700 {folder}`, as the next save will"
+            f" ({_mode(folder)}): `chmod 700 {shlex.quote(str(folder))}`, as the next save will"
         )
     secrets = folder / SECRETS
     if readable_by_others(secrets):
         lines.append(
             f"{secrets} holds passwords of cameras, and others may read it ({_mode(secrets)}):"
-            f" `chmod 600 {secrets}`"
+            f" `chmod 600 {shlex.quote(str(secrets))}`"
         )
     return lines
 

@@ -1,5 +1,6 @@
 """Checks of folders (private, writable, free space) and of ports."""
 
+import shlex
 from collections.abc import Iterator, Sequence
 
 from mocapd.control.control_messages import StatusReport
@@ -16,19 +17,16 @@ def check_folder(facts: FolderFacts) -> Finding:
     about = f"folder {facts.key}"
     if facts.trouble is not None:
         return bad(about, f"{facts.path}: {facts.trouble.what}", facts.trouble.fix)
+    quoted = shlex.quote(str(facts.path))
     least, usual = TOO_LITTLE_BYTES, LITTLE_BYTES
     if facts.holds_little:
         least = usual = _SMALL_FILES_BYTES
     if facts.free_bytes is not None and facts.free_bytes < least:
-        return bad(
-            about, f"{facts.path}: {_room(facts.free_bytes)}", f"make room: df -h {facts.path}"
-        )
+        return bad(about, f"{facts.path}: {_room(facts.free_bytes)}", f"make room: df -h {quoted}")
     if facts.open_to_others:
-        return warn(about, f"{facts.path}: others may look into it", f"chmod 700 {facts.path}")
+        return warn(about, f"{facts.path}: others may look into it", f"chmod 700 {quoted}")
     if facts.free_bytes is not None and facts.free_bytes < usual:
-        return warn(
-            about, f"{facts.path}: {_room(facts.free_bytes)}", f"make room: df -h {facts.path}"
-        )
+        return warn(about, f"{facts.path}: {_room(facts.free_bytes)}", f"make room: df -h {quoted}")
     room = "" if facts.free_bytes is None else f", {_room(facts.free_bytes)}"
     return ok(about, f"{facts.path}: private and writable{room}")
 
