@@ -141,7 +141,8 @@ class Access:
         hosts = connection.headers.getlist("host")
         if len(hosts) != 1 or hosts[0] not in self._hosts:
             return Refusal(403, "This address is not the one that mocapd printed.")
-        if connection.scope["type"] == "websocket" and connection.scope["path"] == FRAMES_PATH:
+        path = connection.scope["path"].removeprefix(self._place)
+        if connection.scope["type"] == "websocket" and path == FRAMES_PATH:
             return self._frames.refusal(connection)
         if any(origin not in self._origins for origin in connection.headers.getlist("origin")):
             return Refusal(403, "Another site asked for this.")

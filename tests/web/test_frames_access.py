@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
+import httpx
 import pytest
 from websockets.exceptions import ConnectionClosedError, InvalidStatus
 from websockets.sync.client import ClientConnection
@@ -165,6 +166,13 @@ def test_the_pages_token_is_not_the_key(server: WebServer, place: Place) -> None
     assert (
         refused(f"{address.partition('?')[0]}?token={token_of(server)}", origin_of(server)) == 403
     )
+
+
+def test_nor_is_it_below_the_pages_own_path(server: WebServer) -> None:
+    page = httpx.get(server.url, trust_env=False, verify=False, timeout=PATIENCE_S)
+    below = page.headers["location"].partition("?")[0]
+    address = f"ws://127.0.0.1:{server.port}{below}frames?token={token_of(server)}"
+    assert refused(address, origin_of(server)) == 403
 
 
 @pytest.mark.parametrize("path", ELSEWHERE)
