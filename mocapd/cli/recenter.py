@@ -3,6 +3,7 @@
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
+from mocapd.errors import one_line
 
 
 def add_to(app: typer.Typer) -> None:
@@ -22,9 +23,9 @@ def recenter(config: ConfigOption = None, settings: SetOption = None) -> None:
 
     report = target_daemon(config_to_look_after(config, settings)[0].config).recenter()
     side = "left" if report.yaw_deg >= 0.0 else "right"
+    told = one_line(", ".join(report.outputs)) or "no output"
     print(
-        f"forward is {abs(report.yaw_deg):.0f} degrees to the {side} of the room's +Z;"
-        f" told to: {', '.join(report.outputs) or 'no output'}"
+        f"forward is {abs(report.yaw_deg):.0f} degrees to the {side} of the room's +Z; told to: {told}"
     )
     if not {"vrchat", "vmt"} & {*report.outputs}:
         typer.echo(

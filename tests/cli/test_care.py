@@ -116,6 +116,16 @@ def test_a_reload_says_what_waits_and_a_refusal_names_the_key(
     assert "smoothing.preset: no preset 'x' -- one of: off" in done.err
 
 
+def test_what_a_daemon_answers_gives_the_terminal_no_orders(
+    say: Callable[..., Outcome], serve: Serve
+) -> None:
+    """A service that was broken into is asked by root."""
+    serve(report(instance="\x1b]0;owned\x07", pid=1))
+    for command in ("reload", "doctor"):
+        assert "owned" in (told := say(command).out)
+        assert "\x1b" not in told
+
+
 def test_every_line_has_what_it_is_about() -> None:
     lost = CAMERA.__class__(
         "right", "lost", "unplugged", "usb:1-4:046d:0825:", 0.0, 50, 3, 2, "bumped"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
+from mocapd.errors import one_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,8 +55,9 @@ def _as_json(finding: "Finding") -> str:
 
 def _as_text(findings: "Sequence[Finding]") -> str:
     width = max(len(one.about) for one in findings)
-    return "\n".join(
+    lines = (
         f"{one.verdict:<4}  {one.about:<{width}}  {one.what}"
         + (f" -- {one.fix}" if one.fix else "")
         for one in findings
     )
+    return "\n".join(map(one_line, lines))

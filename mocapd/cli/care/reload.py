@@ -3,6 +3,7 @@
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
+from mocapd.errors import one_line
 
 
 def add_to(app: typer.Typer) -> None:
@@ -23,6 +24,6 @@ def reload(config: ConfigOption = None, settings: SetOption = None) -> None:
 
     daemon = target_daemon(config_to_look_after(config, settings)[0].config)
     done = daemon.reload()
-    print(f"{daemon.instance}: taken up, {done.gap_s:.2f} s without a frame")
+    print(one_line(f"{daemon.instance}: taken up, {done.gap_s:.2f} s without a frame"))
     if done.waiting:
-        print(f"changed, but only for the next start: {', '.join(done.waiting)}")
+        print(one_line(f"changed, but only for the next start: {', '.join(done.waiting)}"))
