@@ -45,7 +45,8 @@ def target_daemon(config: "Config") -> RunningDaemon:
     """The daemon that a command addresses. Raises MocapdError."""
     search = find_daemons(config)
     chosen = select_targets(search.daemons, config)
-    if not chosen:
+    # that of this configuration may be the one that does not answer: a hung one of several services
+    if not chosen or (search.silent and not any(_is_of(config, daemon) for daemon in chosen)):
         raise no_daemon_error(search)
     if len(chosen) > 1:
         names = ", ".join(f"{daemon.instance} (pid {daemon.status.pid})" for daemon in chosen)
@@ -53,6 +54,12 @@ def target_daemon(config: "Config") -> RunningDaemon:
             f"several are running: {names}", "command line", "choose by --set instance=NAME"
         )
     return chosen[0]
+
+
+def _is_of(config: "Config", process: Addressable) -> bool:
+    """Whether the process has the instance or the state directory of this configuration."""
+    is_named = bool(config.instance) and process.instance == chunk(config.instance)
+    return is_named or process.state_dir == str(config.state_dir.resolve())
 
 
 def no_daemon_error(search: FoundDaemons) -> UnavailableError | PermissionDeniedError:

@@ -17,6 +17,8 @@ import msgspec
 import pytest
 
 from mocapd.config.runtime_folder import folders_to_look_in, runtime_folder
+from mocapd.config.sections import Config
+from mocapd.control import target_process
 from mocapd.control.control_client import FoundDaemons, RunningDaemon, running_daemons
 from mocapd.control.control_messages import Recentered, Reloaded, StatusReport, Verb
 from mocapd.control.control_socket import LONGEST_REQUEST, MOST_AT_ONCE, ControlSocket
@@ -27,7 +29,7 @@ from mocapd.control.socket_place import (
     socket_path,
     sockets_in,
 )
-from mocapd.control.target_process import no_daemon_error
+from mocapd.control.target_process import no_daemon_error, target_daemon
 from mocapd.errors import CannotCreateError, ConfigError, MocapdError, UnavailableError
 from tests.control.reports import report
 from tests.outputs.frames import eventually
@@ -308,3 +310,15 @@ def test_a_service_is_known_to_run_by_those_who_may_not_look_into_its_folder() -
 def test_what_is_said_of_it() -> None:
     refused = no_daemon_error(FoundDaemons(foreign=(Path("/run/mocapd"),)))
     assert str(refused) == "/run/mocapd: a daemon of another user is running -- ask with sudo"
+
+
+def test_while_ones_own_daemon_hangs_no_other_one_is_commanded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = RunningDaemon(tmp_path / "control-2.sock", report(instance="hall", state_dir="/else"))
+    found = FoundDaemons((other,), (tmp_path / "control-1.sock",))
+    monkeypatch.setattr(target_process, "find_daemons", lambda _: found)
+    with pytest.raises(UnavailableError, match=r"control-1\.sock: runs, but does not answer"):
+        target_daemon(Config(state_dir=tmp_path))
+    assert target_daemon(Config(state_dir=tmp_path, instance="hall")) is other
+    assert target_daemon(Config(state_dir=Path("/else"))) is other
