@@ -61,6 +61,13 @@ class BodyRecorder:
             self.lost += 1
 
     @property
+    def trouble(self) -> str:
+        """Why frames are missing, for users; empty when none is."""
+        if self.error is not None:
+            return str(self.error)
+        return f"{self.lost} frames are lost: the disk is too slow" if self.lost else ""
+
+    @property
     def path(self) -> Path:
         """The file."""
         return self._writer.path

@@ -125,8 +125,9 @@ class Recordings:
         recorder = self._recorder
         now = None
         if recorder is not None:
-            trouble = "" if recorder.error is None else str(recorder.error)
-            now = NowRecording(recorder.path.stem, recorder.length_s, recorder.frames, trouble)
+            now = NowRecording(
+                recorder.path.stem, recorder.length_s, recorder.frames, recorder.trouble
+            )
         paths = [path for path in shown_in(self.folder) if path.suffix == ".mcap"]
         rows = []
         for path in paths[::-1][:MOST_LISTED]:

@@ -1,6 +1,7 @@
 """The recorder behind the page's button: what it holds while the disk is slow."""
 
 import gc
+import threading
 import time
 import weakref
 from pathlib import Path
@@ -43,6 +44,29 @@ def test_what_a_full_disk_has_cut_off_is_told_at_the_end_and_its_length_is_that_
         recordings.stop()
     (one,) = recordings.list().recordings
     assert one.length_s == 0.0
+
+
+def test_frames_that_a_slow_disk_loses_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    goes_on = threading.Event()
+    monkeypatch.setattr(RecordingWriter, "attach", lambda *_: goes_on.wait())
+    monkeypatch.setattr(body_recorder, "_MOST_WAITING", 2)
+    bodies, shape = BodyHub(), mean_shape(1.7)
+
+    def begin(path: Path) -> BodyRecorder:
+        return BodyRecorder(bodies, path, RecordingMetadata(), "pc")
+
+    recordings = Recordings(tmp_path, begin)
+    recordings.start()
+    for k in range(5):
+        track = Track(lost_body(k, "canned"), shape)
+        bodies.put(BodySample(track, skeleton_of(shape), FrameSet(k, {})))
+    now = recordings.list().now
+    goes_on.set()
+    recordings.stop()
+    assert now is not None
+    assert now.trouble == "3 frames are lost: the disk is too slow"
 
 
 def test_a_full_disk_holds_no_pictures_in_memory(
