@@ -119,6 +119,15 @@ def test_no_unit_takes_the_machines_memory(package: Path, unit: str) -> None:
     assert found == {"MemoryMax": "2G", "TasksMax": "512", "LimitNOFILE": "4096"}
 
 
+@pytest.mark.parametrize(
+    "unit", [f"system/{UNITS[0]}", f"system/{UNITS[1]}", "user/mocapd.service"]
+)
+def test_an_export_that_takes_the_memory_ends_alone(package: Path, unit: str) -> None:
+    """By default systemd ends the service of which one process was killed."""
+    found = settings_of(package / "usr/lib/systemd" / unit, ("OOMPolicy",))
+    assert found == {"OOMPolicy": "continue"}
+
+
 def test_what_prepares_is_the_daemons_user_with_the_daemons_cache(package: Path) -> None:
     folder, own = package / "usr/lib/systemd/system", ("User", "CacheDirectory", "StateDirectory")
     assert settings_of(folder / UNITS[2], own) == settings_of(folder / UNITS[0], own)
