@@ -23,7 +23,7 @@ from tests.outputs.frames import eventually
 from tests.processes import still_runs
 
 _PREPARES = (
-    "import time; print('pose database: 34 %, 12 s so far', file=sys.stderr, flush=True); "
+    "import time; print('pose database: 34 %, film: 5 %, 12 s so far', file=sys.stderr, flush=True); "
     "time.sleep(600)"
 )
 _PLAYER = (
@@ -80,7 +80,7 @@ def test_what_the_daemon_prepares_is_said_with_time_and_share(
         first = stream.state().trouble
         assert first.startswith("Preparing the demo: ")
         assert first.endswith(" s so far")
-        assert eventually(lambda: "pose database 34 %, " in stream.state().trouble)
+        assert eventually(lambda: ": pose database 34 %, film 5 %, " in stream.state().trouble)
         assert not stream.state().ended
     finally:
         stream.close()

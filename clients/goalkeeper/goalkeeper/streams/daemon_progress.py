@@ -5,7 +5,8 @@ import sys
 import threading
 from typing import IO
 
-_PROGRESS = re.compile(r"(?P<what>[^:]+): (?P<share>\d+) %, \d+ s so far")
+# such as `compiling: 43 %, film: 5 %, 62 s so far`
+_PROGRESS = re.compile(r"(?P<shares>(?:[^:,]+: \d+ %, )+)\d+ s so far")
 
 
 class DaemonProgress:
@@ -33,5 +34,5 @@ class DaemonProgress:
             for line in stderr:
                 found = _PROGRESS.fullmatch(line.strip())
                 if found is not None:
-                    self._newest = f"{found['what']} {found['share']} %, "
+                    self._newest = found["shares"].replace(":", "")
                 sys.stderr.write(line)
