@@ -60,6 +60,14 @@ def test_without_a_daemon_it_says_what_to_start() -> None:
     live.close()
 
 
+def test_an_address_that_is_none_is_said() -> None:
+    live = LiveStream(Link("192.168.1.4:7447", typed_options=True))
+    assert eventually(
+        lambda: "--endpoint: '192.168.1.4:7447' is no Zenoh" in live.state().trouble, 30.0
+    )
+    live.close()
+
+
 def test_a_frame_is_as_old_as_its_exposure(running: Running, stream: LiveStream) -> None:
     frame = _seen_now()
     running.sink.send(frame)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from goalkeeper.streams.sighting import Sighting, StreamState, pose_of_frame
 from mocapd.client import Body, Client, Link
-from mocapd.errors import InputError, UnavailableError
+from mocapd.errors import ConfigError, InputError, UnavailableError
 
 _SILENT_S = 1.0  # without a frame, before it is said
 _MOST_AGE_S = 1.0  # of a frame; beyond that two machines' clocks disagree
@@ -36,6 +36,9 @@ class LiveStream:
             except UnavailableError as error:
                 self._trouble = str(error)
                 continue
+            except ConfigError as error:  # of an address that is none: another attempt is the same
+                self._trouble = str(error)
+                return
             if self._closed.is_set():
                 client.close()
                 return
