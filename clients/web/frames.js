@@ -38,6 +38,7 @@ export class Frames {
     this.socket = new WebSocket(this.address);
     this.socket.onopen = () => {
       this.heardMs = performance.now();
+      this.slowness = ""; // the daemon says it anew
     };
     this.socket.onmessage = ({ data }) => this.#hear(data);
     this.socket.onclose = () => {

@@ -220,6 +220,18 @@ def test_a_stream_that_stops_is_said_and_goes_on(page: Page, site: str, daemon: 
     state(page, "live")
 
 
+def test_slowness_is_that_of_the_daemon_which_is_connected(
+    page: Page, site: str, daemon: AnyDaemon
+) -> None:
+    page.goto(f"{site}/#mocapd={daemon.address}")
+    daemon.say('{"schema": "mocapd.Health.v1", "slowness": "too slow"}', frame_text())
+    state(page, "slow", "too slow")
+    daemon.hang_up()
+    state(page, "unreachable")
+    daemon.say(frame_text())
+    state(page, "live")
+
+
 def test_a_link_is_pasted_and_forgotten(page: Page, site: str, daemon: AnyDaemon) -> None:
     page.goto(site)
     state(page, "none", "mocapd web-link")
