@@ -37,6 +37,10 @@ export class Figure {
 
   // The bones that there are. Call it before the first frame, and again when it changes.
   build({ names, parents }) {
+    for (const { geometry, material } of this.group.children) {
+      geometry.dispose(); // what is drawn by a graphics card is not collected
+      material.dispose();
+    }
     this.group.clear();
     this.parts.clear();
     names.forEach((name, i) => {

@@ -148,6 +148,25 @@ def test_an_asymmetric_pose_is_drawn_where_it_is(page: Page, site: str, daemon: 
     assert left_y > right_y + 0.2
 
 
+def test_a_figure_that_is_built_anew_leaves_nothing_behind(page: Page, site: str) -> None:
+    """A rest skeleton comes whenever the daemon has learned the body a little better."""
+    page.goto(site)
+    first, second = page.evaluate(
+        """async (rest) => {
+        const { figure, stage } = await import(new URL("main.js", location).href);
+        const geometries = () => {
+            figure.build(rest);
+            figure.group.visible = true;
+            stage.renderer.render(stage.scene, stage.camera);
+            return stage.renderer.info.memory.geometries;
+        };
+        return [geometries(), geometries()];
+    }""",
+        json.loads(rest_text()),
+    )
+    assert second == first
+
+
 def test_joints_of_which_nothing_is_known_are_not_drawn(
     page: Page, site: str, daemon: AnyDaemon
 ) -> None:
