@@ -50,7 +50,9 @@ def feet_on_floor(motion: SampledMotion) -> SampledMotion:
             "no foot is seen standing", "--feet floor", "leave it out: nothing shows the floor"
         )
     above_m = np.where(contact, np.array(heights), np.inf).min(axis=0)
-    is_level = np.abs(above_m - np.median(above_m[np.isfinite(above_m)])) < _NEAR_M
+    # one of them, where half are higher: between two heights there may be none
+    usual_m = np.quantile(above_m[np.isfinite(above_m)], 0.5, method="lower")
+    is_level = np.abs(above_m - usual_m) < _NEAR_M
     at = np.flatnonzero(is_level)
     lift_m = -np.interp(np.arange(len(above_m)), at, _smooth(above_m[at], motion.rate_hz))
     joints_m = motion.joints_m.copy()

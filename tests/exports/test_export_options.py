@@ -102,6 +102,14 @@ def test_without_a_foot_that_stands_nothing_shows_the_floor() -> None:
         feet_on_floor(_standing(np.linspace(0.0, 3.0, 60)))
 
 
+def test_of_two_heights_as_usual_the_lower_one_is_the_floor() -> None:
+    """On a step for as long as before it."""
+    height_m = np.repeat([0.1, 0.5], 30)
+    found = feet_on_floor(_standing(height_m))
+    above_m = found.joints_m[:, 0, 1] - SKELETON.rest_m[0, 1]
+    assert above_m == pytest.approx(height_m - 0.1)
+
+
 def test_z_up_is_the_same_motion_turned(tmp_path: Path) -> None:
     bvhio = pytest.importorskip("bvhio")  # has no wheel for Python 3.14
     motion = recorded_motion()
