@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from functools import partial
 from itertools import count
 from pathlib import Path
+from unittest.mock import MagicMock
 
 import pytest
 import zenoh
@@ -20,6 +21,7 @@ from mocapd import client, clock
 from mocapd.errors import ConfigError, InputError, UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.wire import SkeletonFrame
+from mocapd.outputs.zenoh import daemon_link
 from tests.outputs.frames import eventually, free_port, small_frame, whole_frame
 from tests.outputs.prediction.moving import distance_m, frame_at, swinging, walking
 from tests.outputs.zenoh_pair import running_sink
@@ -167,6 +169,32 @@ def test_astream_can_be_cancelled_while_waiting() -> None:
         asyncio.run(wait_in_vain(running.endpoint))
     with pytest.raises(TimeoutError):
         asyncio.run(wait_in_vain(f"tcp/127.0.0.1:{free_port()}"))
+
+
+def test_a_connection_that_comes_after_its_cancellation_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Else a program that gives up and tries again keeps one open for each try."""
+    begun, given_up = threading.Event(), threading.Event()
+    session = MagicMock()
+
+    def attempt(_: client.Link) -> MagicMock:
+        begun.set()
+        given_up.wait()
+        return session
+
+    async def give_up() -> None:
+        connecting = asyncio.create_task(daemon_link.connect_async(client.Link()))
+        await asyncio.to_thread(begun.wait)
+        connecting.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await connecting
+        given_up.set()
+        while not session.__exit__.called:
+            await asyncio.sleep(0.01)
+
+    monkeypatch.setattr(daemon_link, "_attempt", attempt)
+    asyncio.run(asyncio.wait_for(give_up(), 30.0))
 
 
 def test_it_goes_on_when_the_daemon_comes_back() -> None:

@@ -83,15 +83,25 @@ def connect(link: Link) -> zenoh.Session:
 
 
 async def connect_async(link: Link) -> zenoh.Session:
-    """As `connect`; can be cancelled between attempts."""
+    """As `connect`; can be cancelled: an attempt that is under way goes on in its thread, and its session is closed."""
     started_s = time.monotonic()
     while True:
+        attempt = asyncio.get_running_loop().run_in_executor(None, _attempt, link)
         try:
-            return await asyncio.to_thread(_attempt, link)
+            return await asyncio.shield(attempt)
+        except asyncio.CancelledError:
+            attempt.add_done_callback(_close_unwanted)
+            raise
         except UnavailableError:
             if _is_over(link, started_s):
                 raise
         await asyncio.sleep(RETRY_S)
+
+
+def _close_unwanted(attempt: asyncio.Future[zenoh.Session]) -> None:
+    if attempt.exception() is None:
+        with attempt.result():  # closes it
+            pass
 
 
 def _is_over(link: Link, started_s: float) -> bool:
