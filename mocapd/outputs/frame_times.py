@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from mocapd.outputs.wire import SkeletonFrame
 
 _CLOCK_SET_NS = 1_000_000  # difference of both clocks' steps beyond which the Unix clock was set
+# a step back of both clocks beyond which their machine was started anew; frames out of order are nearer
+_STARTED_ANEW_NS = 1_000_000_000
 
 
 def frame_times_ns(frames: Sequence[SkeletonFrame]) -> list[int]:
@@ -27,10 +29,13 @@ def frame_times_ns(frames: Sequence[SkeletonFrame]) -> list[int]:
 def _step_ns(before: SkeletonFrame, after: SkeletonFrame) -> int:
     """Time from one frame to another [ns]; 0 if they are out of order.
 
-    The monotonic clock cannot be set, but starts again with the daemon's machine.
+    The monotonic clock cannot be set, but starts again with the daemon's machine; without a battery the Unix clock may
+    then be behind.
     """
     unix_ns = after.capture_unix_ns - before.capture_unix_ns
     monotonic_ns = after.capture_monotonic_ns - before.capture_monotonic_ns
-    was_set = abs(unix_ns - monotonic_ns) > _CLOCK_SET_NS
-    steps_ns = (unix_ns, monotonic_ns) if was_set else (unix_ns,)
-    return min((step_ns for step_ns in steps_ns if step_ns > 0), default=0)
+    if abs(unix_ns - monotonic_ns) <= _CLOCK_SET_NS:
+        return max(0, unix_ns)
+    if max(unix_ns, monotonic_ns) < -_STARTED_ANEW_NS:
+        return _STARTED_ANEW_NS  # how long that took is not known
+    return min((step_ns for step_ns in (unix_ns, monotonic_ns) if step_ns > 0), default=0)

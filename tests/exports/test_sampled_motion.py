@@ -62,17 +62,22 @@ def test_a_clock_that_is_set_neither_costs_frames_nor_adds_any(tmp_path: Path, s
     assert (found.tracked, len(found.motion.joints_m), int(found.motion.gap.sum())) == (120, 120, 0)
 
 
-def test_a_machine_that_is_started_again_leaves_a_gap(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("set_s", "count"), [(2, 240), (-7200, 179)])
+def test_a_machine_that_is_started_again_leaves_a_gap(
+    tmp_path: Path, set_s: int, count: int
+) -> None:
+    """Where its Unix clock is behind afterwards, of a second."""
+
     def later(one: SkeletonFrame) -> SkeletonFrame:
         return msgspec.structs.replace(
             one,
-            capture_unix_ns=one.capture_unix_ns + 2 * 10**9,
+            capture_unix_ns=one.capture_unix_ns + set_s * 10**9,
             capture_monotonic_ns=one.capture_monotonic_ns - 5 * 10**9,
         )
 
     again = [later(one) if one.seq >= 60 else one for one in frames(2.0)]
     found = motion_of(RecordingReader(record(tmp_path / "a.mcap", again)), 0, None)
-    assert (found.tracked, len(found.motion.joints_m)) == (120, 240)
+    assert (found.tracked, len(found.motion.joints_m)) == (120, count)
 
 
 def test_one_frame_is_a_motion(tmp_path: Path) -> None:
