@@ -15,6 +15,8 @@ ENDPOINT = "tcp/127.0.0.1:7447"
 KEY = "mocapd/v1/*/skeleton/0"
 SCHEMA = "mocapd.Skeleton.v1"
 QUIET_S = 2.0  # after which the silence is told [s]
+# what garbage raises in msgspec and below
+DAMAGED = (msgspec.DecodeError, RecursionError, TypeError, ValueError, LookupError, OverflowError)
 LOOK_EVERY_S = 0.002  # so that Ctrl-C is heard [s]
 
 
@@ -65,7 +67,7 @@ def told(sample: zenoh.Sample) -> str:
         if not all(map(math.isfinite, (x_m, y_m, z_m))):
             return f"{seq:6d}  ignored: the position of the left hand is no number"
         confidence = float(joints["leftHand"]["c"])
-    except (msgspec.DecodeError, RecursionError, TypeError, ValueError, LookupError) as error:
+    except DAMAGED as error:
         return f"ignored: no frame: {error!r:.80}"
     return f"{seq:6d}  left hand {x_m:+.2f} {y_m:+.2f} {z_m:+.2f} m  confidence {confidence:.2f}"
 

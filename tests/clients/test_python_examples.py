@@ -145,6 +145,7 @@ def test_what_is_wrong_with_a_message_is_said_and_survived(name: str) -> None:
                     "ignored: .*(no number|Expected `float`)",
                 ),
                 (with_hand([1.0]), wire.MSGPACK, "ignored: "),
+                (changed(seq=float("inf")), wire.MSGPACK, "ignored: "),
                 (good, wire.MSGPACK, "     7  left hand"),
             ):
                 publisher.put(payload, encoding=encoding)
