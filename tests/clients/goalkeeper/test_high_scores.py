@@ -52,6 +52,8 @@ def test_a_damaged_file_is_said_and_left_as_it_is(tmp_path: Path) -> None:
         placed = keep_round(path, _score(100), DAY)
         assert placed.place == 0
         assert "high_scores.json" in placed.trouble
+        named = keep_name(path, placed, "Kim")
+        assert (named.scores[0].name, named.trouble) == ("Kim", placed.trouble)
         assert path.read_text() == damaged
 
 

@@ -70,16 +70,18 @@ def with_round(scores: tuple[HighScore, ...], score: Score, date: str, name: str
 
 
 def keep_name(path: Path, placed: Placed, name: str) -> Placed:
-    """The same table with another name in its new row, which is written."""
+    """The same table with another name in its new row, which is written where the round could be kept."""
     if placed.place is None:
         return placed
     scores = list(placed.scores)
     scores[placed.place] = msgspec.structs.replace(scores[placed.place], name=name)
+    if placed.trouble:  # such as a damaged file
+        return Placed(tuple(scores), placed.place, placed.trouble)
     try:
         _write(path, tuple(scores))
     except MocapdError as error:
         return Placed(tuple(scores), placed.place, str(error))
-    return Placed(tuple(scores), placed.place, placed.trouble)
+    return Placed(tuple(scores), placed.place)
 
 
 def keep_round(path: Path, score: Score, date: str, name: str = "") -> Placed:
