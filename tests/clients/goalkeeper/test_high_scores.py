@@ -2,7 +2,10 @@
 
 from pathlib import Path
 
+import pytest
+
 from goalkeeper.app.high_scores import KEPT, Placed, keep_name, keep_round, read_high_scores
+from goalkeeper.app.options import parse_options
 from goalkeeper.core.scoring import Score
 
 DAY = "2026-01-02"
@@ -28,6 +31,17 @@ def test_a_name_is_kept_also_one_that_is_typed_later(tmp_path: Path) -> None:
     keep_name(path, placed, "Kim")
     assert [one.name for one in read_high_scores(path)] == ["Noor", "Kim"]
     assert keep_name(path, Placed((), None), "Kim").scores == ()
+
+
+@pytest.mark.parametrize("name", ["x" * 41, "Ki\nm", "Ki\udcffm"])
+def test_a_name_that_the_table_cannot_hold_is_refused_at_the_start(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Else the table could not be read any more."""
+    with pytest.raises(SystemExit):
+        parse_options(["--name", name])
+    assert "argument --name" in capsys.readouterr().err
+    assert parse_options(["--name", "x" * 40]).name == "x" * 40
 
 
 def test_a_table_of_an_earlier_version_has_no_names(tmp_path: Path) -> None:

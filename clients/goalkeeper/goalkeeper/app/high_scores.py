@@ -14,6 +14,7 @@ from mocapd.errors import CannotCreateError, InputError, MocapdError
 from mocapd.whole_file import whole_file
 
 KEPT = 10
+LONGEST_NAME = 40
 _MOST_BYTES = 1 << 16
 _Count = Annotated[int, msgspec.Meta(ge=0, le=10**9)]
 
@@ -26,7 +27,7 @@ class HighScore(msgspec.Struct, frozen=True):
     goals: _Count
     best_streak: _Count
     date: Annotated[str, msgspec.Meta(pattern=r"^\d{4}-\d{2}-\d{2}$")]
-    name: Annotated[str, msgspec.Meta(max_length=40)] = ""
+    name: Annotated[str, msgspec.Meta(max_length=LONGEST_NAME)] = ""
 
 
 class _File(msgspec.Struct, frozen=True):

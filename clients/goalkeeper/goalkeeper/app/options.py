@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
+from goalkeeper.app.high_scores import LONGEST_NAME
 from mocapd.client import ENDPOINT
 
 _ABOUT = "Keep the balls out with your own body, as mocapd sees it."
@@ -30,7 +31,7 @@ def parse_options(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument(
         "--difficulty", choices=("easy", "normal", "hard"), default="normal", help="[%(default)s]"
     )
-    parser.add_argument("--name", default="", help="yours, for the high scores")
+    parser.add_argument("--name", type=_name, default="", help="yours, for the high scores")
     seen = parser.add_argument_group("picture and sound")
     seen.add_argument("--view", choices=("behind", "first"), default="behind")
     seen.add_argument("--size", type=window_size, default=_SIZE, metavar="WxH", help="[1280x720]")
@@ -58,6 +59,15 @@ def _whole(low: int, high: int) -> Callable[[str], int]:
 
     read.__name__ = "whole number"
     return read
+
+
+def _name(text: str) -> str:
+    """One that the table of high scores can hold."""
+    if len(text) > LONGEST_NAME or not text.isprintable():
+        raise argparse.ArgumentTypeError(
+            f"it has more than {LONGEST_NAME} letters, or some that cannot be shown"
+        )
+    return text
 
 
 def window_size(text: str) -> tuple[int, int]:
