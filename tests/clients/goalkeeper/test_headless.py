@@ -37,6 +37,16 @@ def test_the_same_input_gives_the_same_score(
     assert saves + goals == shots > 5
 
 
+@pytest.mark.parametrize(("difficulty", "levels"), [("easy", "03 13"), ("hard", "48 58")])
+def test_the_difficulty_is_that_of_the_option(
+    session: Path, capsys: pytest.CaptureFixture[str], difficulty: str, levels: str
+) -> None:
+    """By the level after one shot, a goal or a save."""
+    assert _headless(session, "--difficulty", difficulty, "--shots", "1") == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert any(f"level 0.{level} after" in last for level in levels.split())
+
+
 def test_a_session_that_stops_in_the_middle_is_scored_until_there(
     session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

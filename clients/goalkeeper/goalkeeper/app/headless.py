@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from goalkeeper.app.fixed_steps import FixedSteps
+from goalkeeper.core.difficulty import START_LEVEL
 from goalkeeper.core.events import Conceded, Paused, Saved
 from goalkeeper.core.limbs import LIMBS
 from goalkeeper.core.match import Match, MatchRules, Phase
@@ -38,10 +39,16 @@ class Report:
 
 
 def play_headless(
-    stream: PoseStream, shooter: Shooter, shots: int | None, round_s: float
+    stream: PoseStream,
+    shooter: Shooter,
+    shots: int | None,
+    round_s: float,
+    level: float = START_LEVEL,
 ) -> Report:
-    """One round, as fast as it goes, until its end or the stream's."""
-    rules = MatchRules(round_s=round_s, replay=False, calibrate_s=_CALIBRATE_S, shots=shots)
+    """One round, as fast as it goes, until its end or the stream's; level: of the first shots."""
+    rules = MatchRules(
+        round_s=round_s, replay=False, calibrate_s=_CALIBRATE_S, shots=shots, level=level
+    )
     match = Match(rules, shooter)
     steps = FixedSteps(match, stream)
     lines: list[ShotLine] = []

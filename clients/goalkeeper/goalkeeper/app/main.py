@@ -4,6 +4,7 @@ import sys
 from argparse import Namespace
 
 from goalkeeper.app.headless import Report, play_headless
+from goalkeeper.app.hud_text import level_of
 from goalkeeper.app.options import parse_options
 from goalkeeper.core.shots import RandomShooter
 from goalkeeper.streams.recorded_stream import RecordedStream
@@ -34,7 +35,8 @@ def main(arguments: list[str] | None = None) -> int:
 def _played(options: Namespace) -> Report:
     stream = RecordedStream(options.recording, options.person)
     shooter = RandomShooter(HEADLESS_SEED if options.seed is None else options.seed)
-    return play_headless(stream, shooter, options.shots, options.round)
+    level = level_of(options.difficulty)
+    return play_headless(stream, shooter, options.shots, options.round, level)
 
 
 def _print(report: Report) -> None:
