@@ -82,7 +82,11 @@ def checked_session(
 def _without_held_legs(session: Session) -> Session:
     """A tracker of the upper body carries the legs along, straight: they are drawn, and no figure is of them."""
     held = [name for name in session.joint_names if name.endswith(("LowerLeg", "Foot", "Toes"))]
-    knees = [angle for name, angle in angles_of(session).items() if name.endswith("Knee")]
+    knees = [
+        angle
+        for name, angle in angles_of(session).items()
+        if name.endswith("Knee") and np.isfinite(angle).any()
+    ]
     if len(session.times_s) < 10 or not knees or any(np.nanstd(knee) > 0.1 for knee in knees):
         return session
     confidence = session.confidence.copy()

@@ -144,3 +144,12 @@ def test_frames_that_are_not_finite_or_go_back_are_left_out_and_counted() -> Non
     assert (np.diff(session.times_s) > 0.0).all()
     assert any(note.startswith("2 frames are not finite") for note in session.notes)
     assert any(note.startswith("2 frames are not later") for note in session.notes)
+
+
+@pytest.mark.filterwarnings("error")
+def test_of_knees_that_nobody_saw_it_is_not_said_that_they_never_bend() -> None:
+    """As behind a table; nor does numpy warn of them."""
+    joints_m = standing(T)
+    confidence = np.ones(joints_m.shape[:2])
+    confidence[:, [i for i, name in enumerate(NAMES) if name.endswith(("Leg", "Foot", "Toes"))]] = 0
+    assert checked_session("a", NAMES, T, joints_m, confidence).notes == ()
