@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -139,3 +140,11 @@ def test_a_live_session_grows_forgets_and_survives_what_is_no_pose() -> None:
     assert after is not None
     assert after.duration_s <= LONGEST_S
     assert len(after.gaps_s) == 1
+
+
+def test_a_unix_clock_that_is_set_back_costs_a_live_session_no_frame() -> None:
+    buffer = LiveBuffer("live")
+    for frame in recorded.frames(2.0, 30.0):
+        back_ns = 10 * 10**9 if frame.seq >= 30 else 0
+        unix_ns = frame.capture_unix_ns - back_ns
+        assert buffer.add(msgspec.structs.replace(frame, capture_unix_ns=unix_ns))

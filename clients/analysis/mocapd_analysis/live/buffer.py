@@ -40,12 +40,12 @@ class LiveBuffer:
         names = tuple(frame.joints)
         if names != self._names:
             self._poses.clear()
-            self._names, self._start_ns = names, frame.capture_unix_ns
-        at_s = (frame.capture_unix_ns - self._start_ns) * 1e-9
+            self._names, self._start_ns = names, frame.capture_monotonic_ns
+        at_s = (frame.capture_monotonic_ns - self._start_ns) * 1e-9  # nobody sets this clock
         joints_m = np.array([joint.p for joint in frame.joints.values()], dtype=float)
         confidence = np.array([joint.c for joint in frame.joints.values()], dtype=float)
         is_later = not self._poses or at_s > self._poses[-1].at_s
-        # a clock that was set back for good starts the session afresh
+        # the clock of a machine that was started anew starts the session afresh
         if not is_later and at_s < self._poses[-1].at_s - LONGEST_S:
             self._poses.clear()
             is_later = True
