@@ -267,6 +267,16 @@ def test_a_taken_port_names_its_holder_and_both_ways_out() -> None:
     sink.close()
 
 
+def test_a_taken_port_of_an_endpoint_with_options_is_named_with_the_key_that_has_it() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as holder:
+        port = holder.getsockname()[1]
+        sink = ZenohSink(Params(listen=(f"tcp/127.0.0.1:{port}#iface=lo",)))
+        with pytest.raises(UnavailableError) as caught:
+            sink.open()
+    assert f"port {port} is taken by" in str(caught.value)
+    assert "choose another port in zenoh.listen" in str(caught.value)
+
+
 def test_it_joins_a_router_and_opens_no_socket_of_its_own() -> None:
     port = free_port()
     router = zenoh.Config()

@@ -104,7 +104,7 @@ class Params:
 def _protocol_of(endpoint: str, key: str) -> str:
     """`tcp` of `tcp/127.0.0.1:7447`. Raises ConfigError when the endpoint has no such form."""
     protocol, slash, address = endpoint.partition("/")
-    _, colon, port = address.partition("#")[0].partition("?")[0].rpartition(":")
+    _, colon, port = without_options(address).rpartition(":")
     _require(
         bool(protocol and slash and colon) and port.isdecimal(),
         key,
@@ -112,6 +112,11 @@ def _protocol_of(endpoint: str, key: str) -> str:
         "protocol/address:port, such as tcp/127.0.0.1:7447",
     )
     return protocol
+
+
+def without_options(endpoint: str) -> str:
+    """`tcp/127.0.0.1:7447` of `tcp/127.0.0.1:7447#iface=eth0`."""
+    return endpoint.partition("#")[0].partition("?")[0]
 
 
 def is_loopback(endpoint: str) -> bool:

@@ -8,7 +8,12 @@ import zenoh
 
 from mocapd.errors import MocapdError, PermissionDeniedError, UnavailableError
 from mocapd.outputs.socket_owners import holder_of
-from mocapd.outputs.zenoh.zenoh_config import Params, listen_endpoints, session_config
+from mocapd.outputs.zenoh.zenoh_config import (
+    Params,
+    listen_endpoints,
+    session_config,
+    without_options,
+)
 from mocapd.outputs.zenoh.zenoh_password_file import check_password_file
 
 TAKEN = "os error 98"  # EADDRINUSE in the text of Zenoh's errors, which have no error number
@@ -38,19 +43,20 @@ def _explain_error(params: Params, text: str) -> MocapdError:
             "start it, or leave zenoh.connect empty to be reached without a router",
         )
     where = ", ".join(listen_endpoints(params))
+    port_key = "port in zenoh.listen" if params.listen else "zenoh.port"
     if TAKEN in text:
         taken = next((e for e in listen_endpoints(params) if e in text), where)
-        port = int(taken.rpartition(":")[2])
+        port = int(without_options(taken).rpartition(":")[2])
         holder = holder_of(port)
         return UnavailableError(
             f"port {port} is taken by {holder}" if holder else f"port {port} is taken",
             taken,
             f'join it with zenoh.connect = ["tcp/127.0.0.1:{port}"] if it is a Zenoh router, '
-            "or choose another zenoh.port",
+            f"or choose another {port_key}",
         )
     if FORBIDDEN in text:
         return PermissionDeniedError(
-            "not allowed to listen there", where, "choose a zenoh.port above 1023"
+            "not allowed to listen there", where, f"choose a {port_key} above 1023"
         )
     # after the sentence Zenoh appends the position in its source
     return UnavailableError(
