@@ -125,7 +125,7 @@ def _override_zenoh(section: ZenohSection, host: str | None, port: int | None) -
     number = section.port if port is None else port
     if host is None:
         return replace(section, port=number, listen=(), connect=())
-    return replace(section, connect=(f"tcp/{address_text(host, number)}",))
+    return replace(section, listen=(), connect=(f"tcp/{address_text(host, number)}",))
 
 
 def _osc(section: OscSection, _instance: str) -> Sink:

@@ -217,6 +217,13 @@ def test_a_name_is_looked_up_once_and_ipv4_preferred(monkeypatch: pytest.MonkeyP
         ("vrchat", VRChatSection(), "fd00::7", 9, {"destination": "[fd00::7]:9"}),
         ("zenoh", ZenohSection(connect=("tcp/1.2.3.4:1",)), None, 5, {"port": 5, "connect": ()}),
         ("zenoh", ZenohSection(), "10.0.0.2", None, {"connect": ("tcp/10.0.0.2:7447",)}),
+        (
+            "zenoh",
+            ZenohSection(listen=("tcp/127.0.0.1:1",)),
+            "10.0.0.2",
+            5,
+            {"listen": (), "connect": ("tcp/10.0.0.2:5",)},
+        ),
     ],
 )
 def test_host_and_port_take_the_place_of_what_is_configured(
