@@ -31,7 +31,7 @@ def send_test_command(
 ) -> None:
     """Send a waving and stepping person to an output, without cameras: to test firewall and avatar.
 
-    Exit code: 0 if all data was sent, 1 if no program listens. Other machines may not report the latter.
+    Exit code: 0 if a program listens, 1 if none does. Other machines may not report the latter.
     With Zenoh, --port is the port for games to connect to, and --host the address of a router to join.
 
     Example: mocapd send-test --output vrchat --host 192.168.1.20
