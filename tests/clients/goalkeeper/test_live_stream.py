@@ -80,6 +80,20 @@ def test_a_frame_is_as_old_as_its_exposure(running: Running, stream: LiveStream)
     assert stream.state().trouble == ""
 
 
+def test_a_predicted_pose_is_of_the_time_that_it_is_for(
+    running: Running, stream: LiveStream
+) -> None:
+    running.sink.send(msgspec.structs.replace(FRAME, capture_monotonic_ns=10_090_000_000))
+    found: list[Sighting] = []
+
+    def came() -> bool:
+        found.extend(stream.poll(10.0))
+        return bool(found)
+
+    assert eventually(came)
+    assert found[0].captured_s == pytest.approx(10.09)
+
+
 def test_clocks_that_disagree_give_the_usual_age(running: Running, stream: LiveStream) -> None:
     running.sink.send(FRAME)  # of another boot, years ago
     one = _next(stream)

@@ -10,6 +10,7 @@ from mocapd.errors import ConfigError, InputError, UnavailableError
 _SILENT_S = 1.0  # without a frame, before it is said
 _MOST_AGE_S = 1.0  # of a frame; beyond that two machines' clocks disagree
 _USUAL_AGE_S = 0.05  # taken instead
+_MOST_AHEAD_S = 0.1  # of a pose that the daemon predicts
 _ATTEMPT_S = 2.0
 
 
@@ -95,9 +96,10 @@ class LiveStream:
 
 
 def _captured_s(body: Body, now_s: float) -> float:
-    """When it was exposed: by the sender's monotonic clock, which on one machine is that of now_s, else by Unix time."""
+    """When it was exposed, or the time that it is predicted for: by the sender's monotonic clock, which on one machine is
+    that of now_s, else by Unix time."""
     by_monotonic_s = body.frame.capture_monotonic_ns * 1e-9
     for captured_s in (by_monotonic_s, now_s - body.age_s):
-        if 0.0 <= now_s - captured_s <= _MOST_AGE_S:
+        if -_MOST_AHEAD_S <= now_s - captured_s <= _MOST_AGE_S:
             return captured_s
     return now_s - _USUAL_AGE_S
