@@ -64,18 +64,23 @@ def apply_step(
     return root, local
 
 
-def predict_pose(
-    model: BodyModel, state: MotionState, dt_s: float, damping: float = 1.0
-) -> tuple[Floats, Floats]:
+def predict_pose(model: BodyModel, state: MotionState, dt_s: float) -> tuple[Floats, Floats]:
     """root_m and local_xyzw after dt_s at the state's velocity."""
-    return apply_step(model, state.root_m, state.local_xyzw, state.velocity * (dt_s * damping))
+    return apply_step(model, state.root_m, state.local_xyzw, state.velocity * dt_s)
 
 
 def predict_state(
-    model: BodyModel, state: MotionState, dt_s: float, damping: float = 1.0
+    model: BodyModel,
+    state: MotionState,
+    dt_s: float,
+    damping: float = 1.0,
+    root_damping: float | None = None,
 ) -> MotionState:
-    """The state after dt_s at its velocity, see `predict_pose`."""
-    root, local = predict_pose(model, state, dt_s, damping)
+    """The state after dt_s at a share of its velocity: `damping`, and of the root's `root_damping`, if given."""
+    step = state.velocity * (dt_s * damping)
+    if root_damping is not None:
+        step[:3] = state.velocity[:3] * (dt_s * root_damping)
+    root, local = apply_step(model, state.root_m, state.local_xyzw, step)
     return replace(state, root_m=root, local_xyzw=local)
 
 

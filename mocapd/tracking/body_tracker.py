@@ -10,7 +10,7 @@ from mocapd.body.skeleton import standard_skeleton
 from mocapd.clock import nanoseconds, seconds
 from mocapd.each import Each, in_turn
 from mocapd.errors import ConfigError
-from mocapd.fit.motion_state import MotionState, predict_state, shape_prior, update_shape
+from mocapd.fit.motion_state import MotionState, shape_prior, update_shape
 from mocapd.tracking.base import Probe, Track, lost_body, no_probe, require_stature
 from mocapd.tracking.cue_trust import CLOTHES_TRUST, SHIRT_TRUST, CueTrust
 from mocapd.tracking.cues.base import Cue
@@ -159,7 +159,7 @@ class BodyTracker:
         motion = state.motion
         if not is_observed:
             coast_s = _coast_s(state, frames.t_ns)
-            motion = predict_state(self._model, motion, coast_s, self.params.damping)
+            motion = state.predicted(self._model, coast_s, self.params.damping)
         track = publish_body(
             state, motion, estimates, self._shirt, self._clothes, self._filter, frames.t_ns, tracking, shape
         )  # fmt: skip
@@ -206,7 +206,7 @@ class BodyTracker:
         """The state after this frame set. Without evidence it is the old state, with its old time."""
         clothes, locator = self._clothes, self._locator
         dt_s = max(seconds(t_ns - state.t_ns), 1e-3)
-        predicted = predict_state(self._model, state.motion, dt_s, self.params.damping)
+        predicted = state.predicted(self._model, dt_s, self.params.damping)
         observed = trunk = whole = separate = None
         if clothes is not None:
             observed = clothes.observe(predicted, t_ns, state.legs_since_ns, state.by_shirt)

@@ -7,12 +7,14 @@ import numpy as np
 from mocapd.body.model import BodyModel
 from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.motion_state import MotionState
+from mocapd.fit.motion_state import MotionState, predict_state
 from mocapd.geometry import rotations
 from mocapd.types import Floats
 
 # the prior of a body from another cue is as loose as a prediction over this time
 NEW_BODY_PRIOR_S = 0.1
+# Cameras, from which on the root's velocity is known in each direction; one camera, or two, measure what is noise in depth.
+_ROOT_GOES_ON_FROM = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,6 +54,11 @@ class TrackState:
         """The same state with the caller's body shape."""
         motion = replace(self.motion, factors=wearer.factors, information=wearer.information)
         return replace(self, motion=motion, taught_s=wearer.taught_s)
+
+    def predicted(self, model: BodyModel, dt_s: float, damping: float) -> MotionState:
+        """The body dt_s later, which keeps a share `damping` of its velocity; of its root's all, where that is well known."""
+        root = 1.0 if len(self.cameras) >= _ROOT_GOES_ON_FROM else damping
+        return predict_state(model, self.motion, dt_s, damping, root)
 
 
 def upper_body_state(whole: MotionState, upper: BodyModel) -> MotionState:

@@ -3,22 +3,33 @@ their pose.
 
 Regions of the same colour are separated only by the rendered pose. So the pictures are classified again about each start
 pose: with the classification of the predicted pose, an arm before a trunk of its colour could not move away from it.
+
+Where the rays of three cameras and more cross, a limb that is not there is tried there, whatever its keypoints cost: each
+costs a bounded number of pixels, and a limb's own pixels may be many more.
 """
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from mocapd.body.skeleton import INDEX, OTHER_SIDE
+from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.fit.motion_state import MotionState, turned_about_vertical
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.fit.terms.term import Term
-from mocapd.tracking.cues.keypoints.limbs_at_keypoints import with_limbs_at_keypoints
+from mocapd.tracking.cues.keypoints.keypoint_consensus import LEAST_CAMERAS
+from mocapd.tracking.cues.keypoints.limbs_at_keypoints import (
+    limbs_off_crossings,
+    with_limbs_at_keypoints,
+)
 from mocapd.tracking.hypotheses.base import WHOLE, HypothesisContext, ScoredFit, best_start
 from mocapd.types import Floats
 
+_CROSSINGS_S = (
+    2 * TICK_S
+)  # between tries of limbs where rays cross: in frame sets with new keypoints
 _LEGS = [j for name, one in LIMBS.items() if name.endswith("leg") for j in (one.lower, one.end)]
 
 
@@ -47,11 +58,12 @@ def keypoint_starts(
     params: KeypointPoseParams,
     legs_alone: bool = False,
     each_alone: bool = False,
+    off: Collection[str] = (),
 ) -> list[tuple[MotionState, tuple[str, ...]]]:
     """Start poses with the parts that change: with the limbs that are far from their keypoints, and with the whole body.
 
     held: further terms of the keypoint fit; legs_alone: the rest of the body is fixed; each_alone: also with each of these
-    limbs alone, as another may have been seen where it is not.
+    limbs alone, as another may have been seen where it is not; off: limbs that are not where their rays cross.
     """
     p, joints_m = params, fitter.joints(fit.state)[0]
     costs = keypoints.costs(joints_m)
@@ -61,15 +73,20 @@ def keypoint_starts(
         if not legs_alone or name.endswith("leg")
     }
     whole = not legs_alone and costs.sum() > p.whole_cost
-    if max(far.values()) <= p.limb_cost and not whole:
+    if max(far.values()) <= p.limb_cost and not whole and not off:
         return []
     # a trunk from the shirt has the right sides; so have keypoints that agree with it about the facing direction
     sides_agree = legs_alone and abs(keypoints.turn_rad(joints_m)) < p.turned_rad
     if not sides_agree and legs_exchanged(keypoints, joints_m, costs, p):
         far = {name: cost for name, cost in far.items() if name.endswith("arm")}
     lost = [name for name, cost in far.items() if cost > p.limb_cost or whole]
+    starts: list[tuple[MotionState, tuple[str, ...]]] = [
+        (with_limbs_at_keypoints(fitter, fit.state, keypoints, (name,)), (name,))
+        for name in off
+        if name in far
+    ]
     if not lost:
-        return []
+        return starts
     there = fit_to_keypoints(fitter, fit.state, keypoints, held, p, lost)
     costs_there = keypoints.costs(fitter.joints(there)[0])
     limbs = tuple(
@@ -77,10 +94,9 @@ def keypoint_starts(
         for name, cost in far.items()
         if cost - costs_there[[LIMBS[name].lower, LIMBS[name].end]].sum() > p.limb_cost
     )
-    starts: list[tuple[MotionState, tuple[str, ...]]] = []
     choices = [limbs] if limbs else []
     if each_alone and len(limbs) > 1:
-        choices += [(name,) for name in limbs]
+        choices += [(name,) for name in limbs if name not in off]
     for chosen in choices:
         local = fit.state.local_xyzw.copy()
         for name in chosen:
@@ -160,9 +176,13 @@ def best_keypoint_pose(
     the other way; each_alone: see `keypoint_starts`, not where views hide the depth of a limb."""
     fitter = at.solvers.fitter
     held = [one for one in now.terms if not one.is_measured and one is not joints]
+    tries_crossings = at.ticks.due(_CROSSINGS_S, TICK_S)
+    off = limbs_off_crossings(joints, fitter.joints(now.fit.state)[0]) if tries_crossings else ()
     starts = keypoint_starts(
-        fitter, now.fit, joints, held, params, at.trunk_prior is not None, each_alone
+        fitter, now.fit, joints, held, params, at.trunk_prior is not None, each_alone, off
     )
+    # what rays that cross say of a limb's place does not hang on where it was thought to be
+    farther = params.farther if len(joints.rays) < LEAST_CAMERAS else 0.0
     return best_start(
-        now, at, starts, params.fit_iterations, params.gain, params.farther, None if is_reversed else joints
+        now, at, starts, params.fit_iterations, params.gain, farther, None if is_reversed else joints
     )  # fmt: skip

@@ -11,12 +11,13 @@ from mocapd.fit.fit_params import LegSearchParams, LimbSearchParams
 from mocapd.fit.limbs.arm_search import ArmSearch
 from mocapd.fit.limbs.leg_search import LegSearch
 from mocapd.fit.motion_state import MotionState
-from mocapd.fit.terms.joint_term import JointRays, JointTerm
+from mocapd.fit.terms.joint_term import JointRays, JointTerm, JointTermParams
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
 from mocapd.tracking.cues.clothes.region_merge import RegionSolvers
+from mocapd.tracking.cues.keypoints.limbs_at_keypoints import limbs_off_crossings
 from mocapd.tracking.hypotheses.base import HypothesisContext, PoseEvidence, ScoredFit
 from mocapd.tracking.hypotheses.keypoint_poses import (
     KeypointPoseParams,
@@ -115,6 +116,25 @@ def test_a_limb_goes_where_it_was_seen_though_another_was_seen_where_it_is_not()
     off_m = np.linalg.norm(FITTER.joints(found.fit.state)[0] - FITTER.joints(true)[0], axis=1)
     assert off_m[HAND] < 0.15
     assert off_m[INDEX["rightFoot"]] < 0.25
+
+
+def test_three_cameras_that_agree_have_a_limb_tried_where_their_rays_cross_though_it_costs_little() -> (
+    None
+):
+    here = with_arm(standing(0.0, 0.1), -1.3)
+    true = with_arm(here, 0.7)
+    seen = seen_at(FITTER.joints(true)[0])
+    rays = [*seen.rays, seen.rays[0]]
+    fit = FITTER.fit(here, drawn(here), DT_S, 1)
+    for cameras, tried in ((2, []), (3, ["left_arm"])):
+        joints = JointTerm(BODY, rays[:cameras], JointTermParams(weight=0.1, depth_weight=0.0))
+        joints_m = FITTER.joints(fit.state)[0]
+        off = limbs_off_crossings(joints, joints_m)
+        assert off == tried
+        starts = keypoint_starts(FITTER, fit, joints, (), PARAMS, off=off)
+        assert [changed for _, changed in starts] == [(name,) for name in tried]
+    off_m = np.linalg.norm(FITTER.joints(starts[0][0])[0] - FITTER.joints(true)[0], axis=1)
+    assert off_m[HAND] < 0.05
 
 
 def test_where_limbs_are_as_they_were_seen_nothing_is_tried() -> None:
