@@ -8,7 +8,6 @@ from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.hypotheses.base import HypothesisContext, PoseHypothesis, ScoredFit, best_start
-from mocapd.tracking.hypotheses.hull_poses import HullEnds
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 
 _ENDS = [limb.end for limb in LIMBS.values()]
@@ -88,8 +87,6 @@ class HypothesisTests:
 
     def __init__(self, params: ClothesParams) -> None:
         self._always: dict[str, PoseHypothesis] = {
-            # first: it reads what was drawn last, which is the fit that it gets
-            "hull_ends": HullEnds(params.hull_ends, params.limbs),
             "moved_limbs": MovedLimbs(),
             "keypoint_poses": KeypointPoses(params.keypoint_poses),
         }

@@ -8,7 +8,6 @@ from mocapd.fit.terms.floor_term import FloorParams
 from mocapd.fit.terms.joint_term import JointTermParams
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
-from mocapd.tracking.hypotheses.hull_poses import ReachingParams
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoseParams
 from mocapd.tracking.planted_feet import PlantedFeetParams
 from mocapd.vision.room_background import BackgroundParams
@@ -148,7 +147,6 @@ class ClothesParams:
     depths: StereoDepthParams = field(default_factory=StereoDepthParams)
     joints: KeypointDetectionParams = field(default_factory=KeypointDetectionParams)
     keypoint_poses: KeypointPoseParams = field(default_factory=KeypointPoseParams)
-    hull_ends: ReachingParams = field(default_factory=ReachingParams)
     distances: StereoMatchParams = field(
         default_factory=lambda: StereoMatchParams(points=10, leg_points=24)
     )
