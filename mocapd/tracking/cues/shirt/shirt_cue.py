@@ -44,6 +44,7 @@ from mocapd.types import Bytes, Floats, Rig
 from mocapd.vision.room_background import RoomBackground
 
 _ARMS = [INDEX[side + bone] for side in SIDES for bone in ("UpperArm", "LowerArm", "Hand")]
+_WITHOUT_ARMS = 0.5  # share of an acceptable match that a shirt's trunk has, however its arms are
 _LONGEST_TICKS = 8  # after a pause no more is learned from a frame set than after so many
 
 
@@ -195,6 +196,8 @@ class ShirtCue:
         if not views:
             return None
         fit = self.fitter.fit(start, views, NEW_BODY_PRIOR_S, self.params.fit.iterations)
+        if fit.explained < _WITHOUT_ARMS * self.params.accept_match:
+            return None
         fit, _ = self._arms.improve(fit, views, NEW_BODY_PRIOR_S, frame_index)
         if not self._is_acceptable(fit):
             return None
