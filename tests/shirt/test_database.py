@@ -161,6 +161,7 @@ def test_a_twentieth_of_the_poses_serves_until_the_whole_is_made(
 ) -> None:
     tiny = DatabaseParams(count=60, cells=4, dimensions=8)
     monkeypatch.setattr(database_file, "BEGINNING", replace(tiny, count=20))
+    (tmp_path / CACHE_NAME).write_bytes(b"the whole one of a former version")
     assert len(load_or_build_beginning(tmp_path).database) == 20
     assert not load_or_build_beginning(tmp_path).built
     monkeypatch.setattr(database_file, "DatabaseParams", lambda: tiny)

@@ -18,7 +18,6 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mocapd.boundary.files import is_file
 from mocapd.boundary.parsing import parse_json
 from mocapd.errors import CannotCreateError, MalformedError
 from mocapd.file_lock import one_at_a_time
@@ -91,10 +90,11 @@ def load_or_build(
 def load_or_build_beginning(
     cache_dir: Path, progress: Progress = lambda _: None, map_chunks: MapChunks = map
 ) -> LoadedDatabase:
-    """The whole database if its file exists; else a twentieth of its poses, which takes 1.5 s to build, and finds nearly
-    as much: docs/decisions/pose-database.md."""
-    if is_file(cache_dir / CACHE_NAME):
-        return load_or_build(cache_dir, None, progress, map_chunks)
+    """The whole database if its file can be used; else a twentieth of its poses, which takes 1.5 s to build, and finds
+    nearly as much: docs/decisions/pose-database.md."""
+    with suppress(_UnusableError):
+        whole = _read(cache_dir / CACHE_NAME, content_hash(DatabaseParams()))
+        return LoadedDatabase(whole, built=False)
     return _load_or_build(
         cache_dir / BEGINNING_NAME, BEGINNING_LOCK_NAME, BEGINNING, progress, map_chunks
     )
