@@ -59,6 +59,12 @@ def hull_candidates(
     return []
 
 
+def rehearse_hull(cameras: Sequence[Camera], params: HullStartParams) -> None:
+    """Compiles or loads the hull's kernel. Nothing with too few cameras for a hull."""
+    if len(cameras) >= params.cameras:
+        carve_log_odds(cameras, [np.zeros((2, 2), np.float32) for _ in cameras], np.zeros((1, 3)))
+
+
 def _people(
     columns: NDArray[np.bool_],
     points_m: Floats,

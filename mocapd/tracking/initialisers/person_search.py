@@ -22,7 +22,11 @@ from mocapd.tracking.cues.keypoints.limbs_at_keypoints import (
     limbs_off_crossings,
     with_limbs_at_keypoints,
 )
-from mocapd.tracking.initialisers.hull_candidates import HullCandidate, hull_candidates
+from mocapd.tracking.initialisers.hull_candidates import (
+    HullCandidate,
+    hull_candidates,
+    rehearse_hull,
+)
 from mocapd.tracking.initialisers.keypoint_initialiser import KeypointCandidate, KeypointInitialiser
 from mocapd.tracking.initialisers.motion_monitor import MotionMonitor
 from mocapd.tracking.initialisers.standing_initialiser import (
@@ -120,6 +124,10 @@ class PersonSearch:
         self._clear: dict[int, Bytes] = {}
         self._hull: list[HullCandidate] | None = None
         self.give_up()
+
+    def rehearse(self) -> None:
+        """Loads the kernel that the first search before three cameras or more would wait for."""
+        rehearse_hull(self._cameras, self._hull_params)
 
     def on_body(self, root_m: Floats, t_ns: int) -> None:
         """Remembers where (3,) and when the tracked person was."""

@@ -89,8 +89,9 @@ class ClothesCue:
         self._is_late = False
 
     def rehearse(self) -> None:
-        """See `ClothesSolver`."""
+        """See `ClothesSolver`, `PersonSearch`."""
         self._solver.rehearse()
+        self._search.rehearse()
         self.reset()
 
     def take(self, pictures: Pictures, ticks: Ticks, /) -> None:
