@@ -3,16 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project
-from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_params import HullStartParams
-from mocapd.tracking.cues.clothes.clothes_solver import ClothesSolver
-from mocapd.tracking.initialisers import hull_candidates as hull_module
 from mocapd.tracking.initialisers.hull_candidates import HullCandidate, hull_candidates
-from mocapd.types import Bytes, Floats, Rig
+from mocapd.types import Bytes, Floats
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, UNKNOWN
 from tests.vision.hull.ring_of_cameras import FIGURE, ring, silhouette
 
@@ -118,14 +114,3 @@ def test_an_empty_room_has_nobody_and_two_cameras_no_hull() -> None:
     assert candidates(foregrounds([])) == []
     assert candidates(foregrounds(FLOOR)) == []
     assert hull_candidates(foregrounds(FIGURE, 2), CAMERAS, [1] * 4, PARAMS) is None
-
-
-@pytest.mark.parametrize(("cameras", "carved"), [(2, []), (4, [4])])
-def test_a_rehearsal_loads_the_kernel_that_the_first_search_needs(
-    monkeypatch: pytest.MonkeyPatch, cameras: int, carved: list[int]
-) -> None:
-    calls: list[int] = []
-    monkeypatch.setattr(hull_module, "carve_log_odds", lambda seeing, *_: calls.append(len(seeing)))
-    monkeypatch.setattr(ClothesSolver, "rehearse", lambda _: None)
-    ClothesCue(Rig(tuple(CAMERAS[:cameras])), 1.75).rehearse()
-    assert calls == carved

@@ -11,6 +11,7 @@ from mocapd.body.skeleton import INDEX
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.fit_result import Fit
+from mocapd.fit.joint_uncertainty import joint_uncertainty_m, pose_covariance
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.priors.motion_prior import predicted_information, prediction_prior
 from mocapd.fit.solver import Fitter
@@ -143,6 +144,7 @@ class ClothesSolver:
         terms = (*self.terms.measure(fitter, body, views, black.grey, 0), *observed, planted)
         fit = fitter.fit(body, views, TICK_S, 2, terms=terms)
         predicted_information(fit.covariance, body.velocity, 1.0, fitter.prediction_sd, [])
+        joint_uncertainty_m(model, *fitter.joints(body), pose_covariance(model, fit.H))
         cameras.learn(body, views)
         self._velocity(fit, views, body, TICK_S, ())
         evidence = PoseEvidence(cameras.classify, lambda _, __: terms)
