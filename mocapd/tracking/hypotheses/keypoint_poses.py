@@ -27,9 +27,7 @@ from mocapd.tracking.cues.keypoints.limbs_at_keypoints import (
 from mocapd.tracking.hypotheses.base import WHOLE, HypothesisContext, ScoredFit, best_start
 from mocapd.types import Floats
 
-_CROSSINGS_S = (
-    2 * TICK_S
-)  # between tries of limbs where rays cross: in frame sets with new keypoints
+_CROSSINGS_S = 2 * TICK_S  # between tries of limbs where rays cross, in sets with new keypoints
 _LEGS = [j for name, one in LIMBS.items() if name.endswith("leg") for j in (one.lower, one.end)]
 
 
@@ -46,7 +44,7 @@ class KeypointPoseParams:
     fit_iterations: int = 4  # of a fit to the pictures from there
     loose_s: float = 0.3  # the prior is as weak as a prediction over this time
     gain: float = 5.0  # cost decrease needed to accept it [disagreeing pixels]
-    # further decrease needed for limbs that are farther away [disagreeing pixels/rad^2]
+    # further decrease needed for limbs that are farther away, before two cameras [disagreeing pixels/rad^2]
     farther: float = 5.0
 
 
@@ -58,12 +56,13 @@ def keypoint_starts(
     params: KeypointPoseParams,
     legs_alone: bool = False,
     each_alone: bool = False,
-    off: Collection[str] = (),
+    at_crossings: bool = False,
 ) -> list[tuple[MotionState, tuple[str, ...]]]:
     """Start poses with the parts that change: with the limbs that are far from their keypoints, and with the whole body.
 
     held: further terms of the keypoint fit; legs_alone: the rest of the body is fixed; each_alone: also with each of these
-    limbs alone, as another may have been seen where it is not; off: limbs that are not where their rays cross.
+    limbs alone, as another may have been seen where it is not; at_crossings: also each limb that is not where its rays
+    cross, there.
     """
     p, joints_m = params, fitter.joints(fit.state)[0]
     costs = keypoints.costs(joints_m)
@@ -73,6 +72,7 @@ def keypoint_starts(
         if not legs_alone or name.endswith("leg")
     }
     whole = not legs_alone and costs.sum() > p.whole_cost
+    off = limbs_off_crossings(keypoints, joints_m) if at_crossings else ()
     if max(far.values()) <= p.limb_cost and not whole and not off:
         return []
     # a trunk from the shirt has the right sides; so have keypoints that agree with it about the facing direction
@@ -176,11 +176,10 @@ def best_keypoint_pose(
     the other way; each_alone: see `keypoint_starts`, not where views hide the depth of a limb."""
     fitter = at.solvers.fitter
     held = [one for one in now.terms if not one.is_measured and one is not joints]
-    tries_crossings = at.ticks.due(_CROSSINGS_S, TICK_S)
-    off = limbs_off_crossings(joints, fitter.joints(now.fit.state)[0]) if tries_crossings else ()
     starts = keypoint_starts(
-        fitter, now.fit, joints, held, params, at.trunk_prior is not None, each_alone, off
-    )
+        fitter, now.fit, joints, held, params, at.trunk_prior is not None, each_alone,
+        at.ticks.due(_CROSSINGS_S, TICK_S),
+    )  # fmt: skip
     # what rays that cross say of a limb's place does not hang on where it was thought to be
     farther = params.farther if len(joints.rays) < LEAST_CAMERAS else 0.0
     return best_start(

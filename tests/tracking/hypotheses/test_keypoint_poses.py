@@ -128,10 +128,8 @@ def test_three_cameras_that_agree_have_a_limb_tried_where_their_rays_cross_thoug
     fit = FITTER.fit(here, drawn(here), DT_S, 1)
     for cameras, tried in ((2, []), (3, ["left_arm"])):
         joints = JointTerm(BODY, rays[:cameras], JointTermParams(weight=0.1, depth_weight=0.0))
-        joints_m = FITTER.joints(fit.state)[0]
-        off = limbs_off_crossings(joints, joints_m)
-        assert off == tried
-        starts = keypoint_starts(FITTER, fit, joints, (), PARAMS, off=off)
+        assert limbs_off_crossings(joints, FITTER.joints(fit.state)[0]) == tried
+        starts = keypoint_starts(FITTER, fit, joints, (), PARAMS, at_crossings=True)
         assert [changed for _, changed in starts] == [(name,) for name in tried]
     off_m = np.linalg.norm(FITTER.joints(starts[0][0])[0] - FITTER.joints(true)[0], axis=1)
     assert off_m[HAND] < 0.05

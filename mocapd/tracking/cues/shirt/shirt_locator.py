@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.body.model import BodyModel
 from mocapd.clock import nanoseconds, seconds
-from mocapd.fit.motion_state import MotionState, predict_state
+from mocapd.fit.motion_state import MotionState
 from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtEstimate
@@ -53,7 +53,7 @@ class ShirtLocator:
         elif self.separate_track is not None:
             separate = self.separate_track
             dt_s = max(seconds(t_ns - separate.t_ns), 1e-3)
-            extrapolated = predict_state(self._whole, separate.motion, dt_s, self._damping)
+            extrapolated = separate.predicted(self._whole, dt_s, self._damping)
             found = cue.follow(separate, extrapolated, dt_s, present, (), frame_index, probe)
         elif t_ns < self._next_attempt_ns and not is_trusted:
             self.has_searched = False
