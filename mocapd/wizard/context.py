@@ -92,17 +92,13 @@ class StepAround:
         self.inner, self.name = inner, inner.name
 
     def enter(self) -> None:
-        """See Step."""
         self.inner.enter()
 
     def tick(self, now_ns: int) -> None:
-        """See Step."""
         self.inner.tick(now_ns)
 
     def job_failed(self, error: MocapdError) -> None:
-        """See Step."""
         self.inner.job_failed(error)
 
     def leave(self) -> None:
-        """See Step."""
         self.inner.leave()

@@ -34,7 +34,7 @@ MakeStep = Callable[[Context], Step]
 
 
 class Wizard:
-    """Runs one step at a time in a thread of its own, from `start` to `stop`.
+    """Runs one step at a time in a thread of its own, from `start` to `stop`; the Context of its steps.
 
     `view`, `send` and `picture` may be called from any thread. `died` gets an unexpected exception that ended the
     thread.
@@ -113,20 +113,16 @@ class Wizard:
     # -- Context, for the steps ------------------------------------------------------------------
 
     def statuses(self) -> Mapping[str, CaptureStatus]:
-        """See Context."""
         return self._statuses()
 
     def scene(self, scene: Scene) -> None:
-        """See Context."""
         if self._scene is not None:
             self._scene(scene)
 
     def start_job(self, job: Callable[[Tell], T], done: Callable[[T], None]) -> None:
-        """See Context."""
         self._job.start(job, done)
 
     def on_saved(self) -> None:
-        """See Context."""
         self._saved = True
         if self._keeper is not None:
             self._keeper.on_saved(self.draft)
@@ -135,7 +131,6 @@ class Wizard:
 
     @property
     def job(self) -> tuple[str, float] | None:
-        """See Context."""
         return self._job.progress
 
     # -- the wizard's thread ---------------------------------------------------------------------

@@ -84,12 +84,10 @@ class MeasuringTracker:
         self._turn = 0
 
     def reset(self, near: BodyState | None = None) -> None:
-        """See Tracker."""
         self._tracker.reset(near)
         self._last = None
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
-        """See Tracker."""
         self._tracker.probe = self.probe
         track = self._tracker.step(frames, shape)
         body = track.body

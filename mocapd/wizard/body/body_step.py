@@ -31,7 +31,7 @@ OLDEST_NS = 200_000_000
 
 
 class BodyStep:
-    """See the module."""
+    """A Step; see the module."""
 
     name = StepName.BODY
     verbs = BODY
@@ -61,7 +61,6 @@ class BodyStep:
             self._start()
 
     def command(self, command: Command) -> None:
-        """See Step."""
         match command:
             case Stature():
                 self._set_stature(command.m)
@@ -158,7 +157,6 @@ class BodyStep:
     # -- view ------------------------------------------------------------------------------------
 
     def view(self) -> StepView:
-        """See Step."""
         draft = self._context.draft
         state, sentence, progress = self._status()
         missing = self._missing()

@@ -41,7 +41,7 @@ _ENOUGH_RATE = 0.8  # of the requested rate
 
 
 class CamerasStep:
-    """Args:
+    """A Step. Args:
     cameras: the host's open cameras, in the order of the hub;
     nodes: lists the machine's cameras (`list_cameras`); () where they are simulated;
     locks: the host's, see CameraLocks; load: of this machine, see MachineWatch.
@@ -75,7 +75,6 @@ class CamerasStep:
         self._statuses: Mapping[str, CaptureStatus] = {}
 
     def enter(self) -> None:
-        """See Step."""
         self._context.hub.join(self._watch)
 
     def leave(self) -> None:
@@ -83,7 +82,6 @@ class CamerasStep:
         self._context.hub.leave(self._watch)
 
     def tick(self, now_ns: int) -> None:
-        """See Step."""
         self._statuses = self._context.statuses()
         self._machine.tick(now_ns)
         for name in self._active_names:
@@ -101,7 +99,6 @@ class CamerasStep:
             self._write_draft()
 
     def command(self, command: Command) -> None:
-        """See Step."""
         assert isinstance(command, OfCamera)
         name = command.camera
         if name not in self._cameras:
@@ -125,7 +122,6 @@ class CamerasStep:
         self._list_trouble = (Problem.of(error),)
 
     def view(self) -> StepView:
-        """See Step."""
         taken = self._active_names
         problems = [problem for name in taken for problem in self._problems(name)]
         problems += (*self._crowded, *self._list_trouble)

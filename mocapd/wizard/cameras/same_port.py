@@ -87,11 +87,9 @@ class AsksForPorts(StepAround):
 
     @property
     def verbs(self) -> Verbs:
-        """See Step."""
         return {**self.inner.verbs, **PORTS}
 
     def command(self, command: Command) -> None:
-        """See Step."""
         if not isinstance(command, SamePort):
             self.inner.command(command)
             return
@@ -105,7 +103,6 @@ class AsksForPorts(StepAround):
         self._moved.remove(asked[0])
 
     def view(self) -> StepView:
-        """See Step."""
         view = self.inner.view()
         questions = tuple(
             Problem(

@@ -97,7 +97,6 @@ class CheckStep:
         self._saved = ""
 
     def enter(self) -> None:
-        """See Step."""
         draft = self._context.draft
         self._context.scene(Scene.MOVING if draft.has_shirt else Scene.EMPTY)
         self._problems = missing_inputs(draft)
@@ -110,7 +109,6 @@ class CheckStep:
         )
 
     def tick(self, now_ns: int) -> None:
-        """See Step."""
         self._now_ns = now_ns
         if self._phase in (Phase.LEAVING, Phase.EMPTY):
             self._empty_room(now_ns)
@@ -136,7 +134,6 @@ class CheckStep:
                 self._problems = self._slowness() or (self._no_person,)
 
     def command(self, command: Command) -> None:
-        """See Step."""
         match command:
             case MeasureAgain():
                 if self._tracking is None or self._phase is Phase.EMPTY:
@@ -146,11 +143,9 @@ class CheckStep:
                 self._save()
 
     def job_failed(self, error: MocapdError) -> None:
-        """See Step."""
         self._phase, self._problems = Phase.MISSING, (Problem.of(error),)
 
     def view(self) -> StepView:
-        """See Step."""
         state, sentence, progress = self._status()
         of_cameras = tuple(
             verdict.problem for verdict in self._verdicts if verdict.problem is not None
@@ -173,7 +168,6 @@ class CheckStep:
         )
 
     def leave(self) -> None:
-        """See Step."""
         if self._tracking is not None:
             self._tracking.stop()
             self._tracking = None

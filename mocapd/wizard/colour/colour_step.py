@@ -35,7 +35,7 @@ _COUNTDOWN_S = 3.0
 
 
 class ColourStep:
-    """See the module."""
+    """A Step; see the module."""
 
     name = StepName.COLOUR
     verbs = COLOUR
@@ -87,7 +87,6 @@ class ColourStep:
             self._start_solving()
 
     def command(self, command: Command) -> None:
-        """See Step."""
         match command:
             case Freeze():
                 wait_s = _COUNTDOWN_S if command.seconds is None else command.seconds
@@ -189,7 +188,6 @@ class ColourStep:
     # -- view ------------------------------------------------------------------------------------
 
     def view(self) -> StepView:
-        """See Step."""
         state, sentence, progress = self._status()
         pictures: dict[str, bytes] = {}
         cameras: dict[str, Json] = {}

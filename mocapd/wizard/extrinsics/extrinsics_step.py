@@ -23,7 +23,7 @@ METHODS: Mapping[str, Callable[[Context], Step]] = MappingProxyType(
 
 
 class ExtrinsicsStep(StepAround):
-    """Delegates to the chosen method; at first the board's."""
+    """A Step that delegates to the chosen method; at first the board's."""
 
     def __init__(self, context: Context) -> None:
         """Raises InputError when intrinsics are missing."""
@@ -51,18 +51,15 @@ class ExtrinsicsStep(StepAround):
 
     @property
     def verbs(self) -> Verbs:
-        """See Step."""
         return {**self.inner.verbs, **ROOM}
 
     def command(self, command: Command) -> None:
-        """See Step."""
         if isinstance(command, Method):
             self._choose("wearer" if command.wearer else command.method)
         else:
             self.inner.command(command)
 
     def view(self) -> StepView:
-        """See Step."""
         view = self.inner.view()
         methods = list(METHODS) if self._context.draft.has_shirt else ["board"]
         details = {**view.details, "method": self._method_name, "methods": methods}

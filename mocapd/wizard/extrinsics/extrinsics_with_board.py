@@ -54,7 +54,7 @@ class BoardPhase(StrEnum):
 
 
 class ExtrinsicsWithBoard:
-    """See the module. Changes the draft after measuring or skipping the floor."""
+    """A Step; see the module. Changes the draft after measuring or skipping the floor."""
 
     name = StepName.ROOM
     verbs = BOARD_ROOM
@@ -84,7 +84,6 @@ class ExtrinsicsWithBoard:
     # -- as a Step -------------------------------------------------------------------------------
 
     def enter(self) -> None:
-        """See Step."""
         self._watch.start()
         if len(self._cameras) == 1:
             one = self._cameras[0]
@@ -95,11 +94,9 @@ class ExtrinsicsWithBoard:
             self._context.scene(Scene.ROOM)
 
     def leave(self) -> None:
-        """See Step."""
         self._watch.stop()
 
     def tick(self, now_ns: int) -> None:
-        """See Step."""
         self._now_ns = now_ns
         self._begun_ns = now_ns if self._begun_ns is None else self._begun_ns
         if self._stage is BoardPhase.DONE:
@@ -120,7 +117,6 @@ class ExtrinsicsWithBoard:
             self._solve()
 
     def command(self, command: Command) -> None:
-        """See Step."""
         match command:
             case Floor():
                 self._floor_by_hand()
@@ -136,7 +132,6 @@ class ExtrinsicsWithBoard:
                 self._asked = True
 
     def job_failed(self, error: MocapdError) -> None:
-        """See Step."""
         if not self._solving:
             return
         self._solving = False
@@ -146,7 +141,6 @@ class ExtrinsicsWithBoard:
             self._collection = self._start_over()
 
     def view(self) -> StepView:
-        """See Step."""
         state = StepState.WAITING
         if self._stage is BoardPhase.DONE:
             state = StepState.DONE

@@ -28,7 +28,7 @@ _SHOWN_PLACES = 12  # of the wearer's path, in the plan of the rig
 
 
 class ExtrinsicsWithWearer:
-    """See the module. Changes the draft after a solution."""
+    """A Step; see the module. Changes the draft after a solution."""
 
     name = StepName.ROOM
     verbs = WEARER_ROOM
@@ -49,7 +49,6 @@ class ExtrinsicsWithWearer:
     # -- as a Step -------------------------------------------------------------------------------
 
     def enter(self) -> None:
-        """See Step."""
         self._context.scene(Scene.MOVING)
 
     def leave(self) -> None:
@@ -64,7 +63,6 @@ class ExtrinsicsWithWearer:
             self._start()
 
     def command(self, command: Command) -> None:
-        """See Step."""
         match command:
             case StartWalk():
                 missing = self._missing()
@@ -143,7 +141,6 @@ class ExtrinsicsWithWearer:
     # -- messages --------------------------------------------------------------------------------
 
     def view(self) -> StepView:
-        """See Step."""
         state, sentence, progress = self._status()
         return StepView(state, sentence, progress, self._problems(), {}, self._details())
 

@@ -84,19 +84,16 @@ class DaemonHost:
 
     @property
     def hub(self) -> FrameHub:
-        """See Host."""
         return self._service.hub
 
     @property
     def rig(self) -> Rig | None:
-        """See Host."""
         wizard = self._wizard
         if wizard is not None and self._checked.loop is not None:
             return wizard.draft.rig
         return self._service.session.rig
 
     def known(self) -> RecordingMetadata:
-        """See Host."""
         session = self._service.session
         shirt = session.calibration.shirt or ShirtColours()
         return RecordingMetadata(
@@ -105,12 +102,10 @@ class DaemonHost:
 
     @property
     def wizard(self) -> Wizard | None:
-        """See Host."""
         self._looked_s = time.monotonic()
         return self._wizard
 
     def setup(self) -> Wizard:
-        """See Host."""
         with self._lock:
             if self._resting:
                 raise UnavailableError(
@@ -126,16 +121,13 @@ class DaemonHost:
         return BodyRecorder(self._service.bodies, path, self.known(), self._service.instance)
 
     def recenter(self) -> None:
-        """See Host."""
         self._service.recenter()
 
     def body(self) -> BodySample | None:
-        """See Host."""
         bodies = self._checked.bodies if self._checked.loop is not None else self._service.bodies
         return bodies.newest()
 
     def snapshot(self) -> Snapshot:
-        """See Host."""
         return self._service.snapshot()
 
     # -- the setup -------------------------------------------------------------------------------

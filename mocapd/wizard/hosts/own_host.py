@@ -110,12 +110,10 @@ class OwnHost:
 
     @property
     def hub(self) -> FrameHub:
-        """See Host."""
         return self._cameras.hub
 
     @property
     def rig(self) -> Rig | None:
-        """See Host."""
         return self.wizard.draft.rig
 
     def known(self) -> RecordingMetadata:
@@ -123,11 +121,9 @@ class OwnHost:
         return RecordingMetadata()
 
     def setup(self) -> Wizard:
-        """See Host."""
         return self.wizard
 
     def body(self) -> BodySample | None:
-        """See Host."""
         return self._shown.bodies.newest()
 
     @property
@@ -136,11 +132,9 @@ class OwnHost:
         return
 
     def recenter(self) -> None:
-        """See Host."""
         raise UnavailableError("no output runs here", "the setup", "start `mocapd run`")
 
     def snapshot(self) -> Snapshot | None:
-        """See Host."""
         loop = self._shown.loop
         if loop is None:
             return None

@@ -50,7 +50,7 @@ _SEEN_NS = 500_000_000  # how long a camera counts as the user's target after a 
 
 
 class IntrinsicsStep:
-    """Collects pictures of the board in all cameras at once, and solves the intrinsics one after the other."""
+    """A Step: collects pictures of the board in all cameras at once, and solves the intrinsics one after the other."""
 
     name = StepName.LENS
     verbs = LENS
@@ -77,16 +77,13 @@ class IntrinsicsStep:
     # -- Step ------------------------------------------------------------------------------------
 
     def enter(self) -> None:
-        """See Step."""
         self._watch.start()
         self._context.scene(Scene.LENS)
 
     def leave(self) -> None:
-        """See Step."""
         self._watch.stop()
 
     def tick(self, now_ns: int) -> None:
-        """See Step."""
         self._now_ns = now_ns
         if self._done():
             return
@@ -97,7 +94,6 @@ class IntrinsicsStep:
             self._solve_next()
 
     def command(self, command: Command) -> None:
-        """See Step."""
         match command:
             case Board():
                 self._change_board(board_of(command, self._spec))
@@ -113,13 +109,11 @@ class IntrinsicsStep:
                 self._finish()
 
     def job_failed(self, error: MocapdError) -> None:
-        """See Step."""
         one, self._solving = self._solving, None
         if one is not None:
             one.refuse(error, len(one.picked.views))
 
     def view(self) -> StepView:
-        """See Step."""
         cameras = self._cameras.values()
         state = StepState.DONE if self._done() else StepState.WAITING
         if state is StepState.WAITING and any(
