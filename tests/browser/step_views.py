@@ -90,7 +90,7 @@ def room(state: StepState = StepState.WAITING, stage: str = "floor") -> StepView
         "rms_px": 0.31, "play_area_cm": 0.42, "cameras": {name: {"rms_px": 0.3} for name in NAMES}, "positions": 9,
     }  # fmt: skip
     boards_m = [[0.3, 1.0, 0.2], [-0.4, 1.2, 0.1], [0.1, 0.9, -0.6]]
-    advice = rig_advice(visible_floor(PAIR), 2) if done else ()
+    advice = tuple(rig_advice(visible_floor(PAIR), 2)) if done else ()
     return StepView(
         state,
         "The room is known. Go on." if done else "Lay the board flat on the floor where both cameras see it.",

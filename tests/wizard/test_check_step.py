@@ -119,7 +119,7 @@ def test_what_was_left_out_is_named_with_its_step(tmp_path: Path) -> None:
     (colours,) = missing_inputs(replace(full_draft(), colours={}))
     assert colours.where == "colour"
     assert colours.what == "the shirt's colours in this light are not known"
-    assert not missing_inputs(full_draft())
+    assert not [*missing_inputs(full_draft())]
     context = FakeContext(tmp_path, Draft())
     step = check_step(context)
     step.enter()

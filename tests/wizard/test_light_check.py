@@ -88,7 +88,7 @@ def grey(level: int) -> Bytes:
 
 
 def test_dark_white_and_good_pictures() -> None:
-    assert light_problems("cam0", grey(120), None, 0.008) == ()
+    assert not [*light_problems("cam0", grey(120), None, 0.008)]
     (dark,) = light_problems("cam0", grey(20), None, 0.033)
     assert "too dark" in dark.what
     (dim,) = light_problems("cam0", grey(110), None, 0.033)

@@ -128,11 +128,11 @@ def test_the_height_is_asked_for_and_nothing_else_of_the_body(tmp_path: Path) ->
 
 def test_colours_are_not_missing_but_a_second_camera_is() -> None:
     draft = replace(full_draft(), has_shirt=False, colours={})
-    assert missing_inputs(draft) == ()
+    assert not [*missing_inputs(draft)]
     assert draft.rig is not None
     alone = replace(draft, rig=Rig(draft.rig.cameras[:1]))
     assert ["second camera" in one.fix for one in missing_inputs(alone)] == [True]
-    assert missing_inputs(replace(alone, has_shirt=True, colours=full_draft().colours)) == ()
+    assert not [*missing_inputs(replace(alone, has_shirt=True, colours=full_draft().colours))]
 
 
 def test_it_is_remembered_in_both_files(tmp_path: Path) -> None:

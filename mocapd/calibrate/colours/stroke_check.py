@@ -6,6 +6,7 @@ the worse it agrees. The light with the most agreement wins, and strokes that di
 another patch.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import cv2
@@ -93,28 +94,23 @@ def require_good_strokes(pixels: Bytes, strokes: Bytes, model: ColourModel, wher
 
 def _misplaced_strokes(
     witnesses: _Witnesses, distance: Floats, agreeing: np.ndarray, model: ColourModel
-) -> list[StrokeProblem]:
-    problems = []
+) -> Iterator[StrokeProblem]:
     for k in np.unique(witnesses.colour[~agreeing]):
         mine = np.flatnonzero(~agreeing & (witnesses.colour == k))
         like = int(np.argmin(np.average(distance[mine], axis=0, weights=witnesses.weight[mine])))
         name, other = model.names[k], model.names[like]
         looks = like != k and (distance[mine, like] < _BETTER * distance[mine, k]).all()
-        problems.append(
-            StrokeProblem(
-                (int(k) + 1, like + 1) if looks else (int(k) + 1,),
-                tuple((int(x), int(y)) for x, y in witnesses.at_px[mine]),
-                f"the stroke for {name} lies on what looks {other} in this light"
-                if looks
-                else f"the stroke for {name} lies on no colour of the shirt",
-                f"erase it and draw {name} on the {name} patch",
-                bool(
-                    2.0 * witnesses.weight[mine].sum()
-                    >= witnesses.weight[witnesses.colour == k].sum()
-                ),
-            )
+        yield StrokeProblem(
+            (int(k) + 1, like + 1) if looks else (int(k) + 1,),
+            tuple((int(x), int(y)) for x, y in witnesses.at_px[mine]),
+            f"the stroke for {name} lies on what looks {other} in this light"
+            if looks
+            else f"the stroke for {name} lies on no colour of the shirt",
+            f"erase it and draw {name} on the {name} patch",
+            bool(
+                2.0 * witnesses.weight[mine].sum() >= witnesses.weight[witnesses.colour == k].sum()
+            ),
         )
-    return problems
 
 
 def _witnesses(pixels: Bytes, strokes: Bytes) -> _Witnesses:

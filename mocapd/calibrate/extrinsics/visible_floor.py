@@ -1,5 +1,6 @@
 """The area of floor on which cameras see a whole person, and advice on improving the rig."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -65,39 +66,31 @@ def visible_floor(rig: Rig) -> VisibleFloor:
     return VisibleFloor(cells_m, size_m, baseline_m, angle_deg)
 
 
-def rig_advice(visible: VisibleFloor, cameras: int) -> tuple[Problem, ...]:
+def rig_advice(visible: VisibleFloor, cameras: int) -> Iterator[Problem]:
     """Improvements of the rig; empty for a good one."""
-    advice = []
     by = "both cameras" if cameras == 2 else "two cameras" if cameras > 2 else "the camera"
     if visible.area_m2 < SMALL_M2:
         turn = ", or turn them towards the same place" if cameras > 1 else ""
         see = "see" if cameras > 1 else "sees"
         size = f"on {visible.area_m2:.1f} square metres of the floor only"
-        advice.append(
-            Problem(
-                f"{by} {see} a person whole {size if len(visible.cells_m) else 'nowhere on the floor'}",
-                "the play area",
-                f"move the cameras back to 2.5 to 3.5 m from its middle{turn}, and do this step again",
-            )
+        yield Problem(
+            f"{by} {see} a person whole {size if len(visible.cells_m) else 'nowhere on the floor'}",
+            "the play area",
+            f"move the cameras back to 2.5 to 3.5 m from its middle{turn}, and do this step again",
         )
     if cameras > 1 and visible.angle_deg < NARROW_DEG:
-        advice.append(
-            Problem(
-                f"the cameras look from nearly the same side: {visible.baseline_m:.1f} m apart, "
-                f"{visible.angle_deg:.0f} degrees",
-                "depth",
-                "put them 1.5 to 3 m apart, and do this step again",
-            )
+        yield Problem(
+            f"the cameras look from nearly the same side: {visible.baseline_m:.1f} m apart, "
+            f"{visible.angle_deg:.0f} degrees",
+            "depth",
+            "put them 1.5 to 3 m apart, and do this step again",
         )
     elif cameras == 2 and visible.angle_deg > WIDE_DEG:
-        advice.append(
-            Problem(
-                f"the cameras face each other ({visible.angle_deg:.0f} degrees): what one sees the other does not",
-                "overlap",
-                "move them to the same half of the room, 60 to 100 degrees apart, and do this step again",
-            )
+        yield Problem(
+            f"the cameras face each other ({visible.angle_deg:.0f} degrees): what one sees the other does not",
+            "overlap",
+            "move them to the same half of the room, 60 to 100 degrees apart, and do this step again",
         )
-    return tuple(advice)
 
 
 def _in_picture(camera: Camera, at_px: Floats, margin: float) -> Bools:

@@ -5,6 +5,7 @@ pulses show as bands; from frame to frame they move by the alias of the pulses a
 (100 Hz at 30 frames: a third of a period). Exposures of whole pulses do not show them.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,37 +37,29 @@ class Flicker:
 
 def light_problems(
     camera: str, pixels: Bytes, flicker: Flicker | None, exposure_s: float | None
-) -> tuple[Problem, ...]:
+) -> Iterator[Problem]:
     """Problems of the light in this picture (h,w,3) BGR.
 
     flicker: the result of `find_flicker` for the frames; exposure_s: exposure time [s], None where unknown.
     """
-    problems = []
     thin = pixels[::12, ::12].reshape(-1, 3)
     if float(np.percentile(thin @ np.array([0.114, 0.587, 0.299]), 75)) < _DARK_LEVEL:
-        problems.append(
-            Problem("the picture is too dark", camera, "switch on more light, or open the blinds")
-        )
+        yield Problem("the picture is too dark", camera, "switch on more light, or open the blinds")
     elif exposure_s is not None and exposure_s > 0.02:
-        problems.append(
-            Problem(
-                f"dim light: each picture takes {1e3 * exposure_s:.0f} ms, so quick movements blur",
-                camera,
-                "more light makes it better; it works as it is",
-            )
+        yield Problem(
+            f"dim light: each picture takes {1e3 * exposure_s:.0f} ms, so quick movements blur",
+            camera,
+            "more light makes it better; it works as it is",
         )
     white = float((thin.min(axis=1) >= _WHITE).mean())
     if white > _WHITE_SHARE:
-        problems.append(
-            Problem(
-                f"{100 * white:.0f} % of the picture is plain white",
-                camera,
-                "turn it away from the window or lamp, draw the curtain, then lock again",
-            )
+        yield Problem(
+            f"{100 * white:.0f} % of the picture is plain white",
+            camera,
+            "turn it away from the window or lamp, draw the curtain, then lock again",
         )
     if flicker is not None:
-        problems.append(_flicker_problem(camera, flicker, exposure_s))
-    return tuple(problems)
+        yield _flicker_problem(camera, flicker, exposure_s)
 
 
 def _flicker_problem(camera: str, flicker: Flicker, exposure_s: float | None) -> Problem:

@@ -1,7 +1,7 @@
 """Turns five seconds of tracking into a verdict on each camera and on the room."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,41 +94,33 @@ _ROOM_FIX = "do the step Room again; the camera may have been moved"
 
 def room_problems(
     measures: Sequence[Measure], hips_m: float, floor_known: bool
-) -> tuple[Problem, ...]:
+) -> Iterator[Problem]:
     """Contradictions to an upright person of the typed stature; `hips_m`: their height in the T-pose."""
     if not measures:
-        return ()
+        return
     lean_rad = float(np.median([m.upright_rad for m in measures]))
     height_m = float(np.median([m.hips_m for m in measures]))
     scale = float(np.median([np.median(m.lengths) for m in measures]))
-    problems = []
     if lean_rad > _LEAN_RAD:
-        problems.append(
-            Problem(
-                f"the person leans by {math.degrees(lean_rad):.0f} degrees",
-                "the floor",
-                "lay the board flat on the floor and do the step Room again",
-            )
+        yield Problem(
+            f"the person leans by {math.degrees(lean_rad):.0f} degrees",
+            "the floor",
+            "lay the board flat on the floor and do the step Room again",
         )
     if floor_known and abs(height_m - hips_m) > _FLOOR_M:
         way = "above" if height_m > hips_m else "below"
-        problems.append(
-            Problem(
-                f"the person stands {100 * abs(height_m - hips_m):.0f} cm {way} the floor",
-                "the floor",
-                "lay the board on the floor where you stand and do the step Room again",
-            )
+        yield Problem(
+            f"the person stands {100 * abs(height_m - hips_m):.0f} cm {way} the floor",
+            "the floor",
+            "lay the board on the floor where you stand and do the step Room again",
         )
     if abs(scale - 1.0) > _SCALE:
         way = "larger" if scale > 1.0 else "smaller"
-        problems.append(
-            Problem(
-                f"the person comes out {100 * abs(scale - 1.0):.0f} % {way} than the stature typed",
-                "the scale",
-                "check the stature, and the size of the board's squares with a ruler",
-            )
+        yield Problem(
+            f"the person comes out {100 * abs(scale - 1.0):.0f} % {way} than the stature typed",
+            "the scale",
+            "check the stature, and the size of the board's squares with a ruler",
         )
-    return tuple(problems)
 
 
 def verdict_json(verdict: CameraVerdict) -> Mapping[str, object]:

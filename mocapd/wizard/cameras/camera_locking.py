@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
+from operator import attrgetter
 
 import numpy as np
 
@@ -54,14 +55,6 @@ class _Aim:
 
 def _alike(one: float, other: float, tolerance: float) -> bool:
     return 1 / (1 + tolerance) <= (one + 1e-3) / (other + 1e-3) <= 1 + tolerance
-
-
-def _brightness(recent: Recent) -> float:
-    return recent.brightness
-
-
-def _warmth(recent: Recent) -> float:
-    return recent.warmth
 
 
 class CameraLocking:
@@ -167,10 +160,11 @@ class CameraLocking:
         self._locks.lock(self.camera, self._fps_hz, self._mains_hz)
         brightness, warmth = self._wanted
         self._aims = [
-            _Aim(control, _brightness, brightness, _BRIGHTNESS_TOLERANCE)
+            _Aim(control, attrgetter("brightness"), brightness, _BRIGHTNESS_TOLERANCE)
             for control in by_brightness
         ]
-        self._aims.append(_Aim(Control.WB_TEMPERATURE, _warmth, warmth, _WARMTH_TOLERANCE))
+        warm = attrgetter("warmth")
+        self._aims.append(_Aim(Control.WB_TEMPERATURE, warm, warmth, _WARMTH_TOLERANCE))
         self._search = None
         self.phase, self._changed_ns = LockPhase.LOCKING, now_ns
 
@@ -222,19 +216,17 @@ class CameraLocking:
 
     def _keep(self, now_ns: int, look: Recent) -> None:
         brightness, warmth = self._wanted
-        trouble = []
-        for what, before, now, tolerance in (
-            ("brightness", brightness, look.brightness, _BRIGHTNESS_TOLERANCE),
-            ("colour", warmth, look.warmth, _WARMTH_TOLERANCE),
-        ):
-            if not _alike(now, before, tolerance):
-                trouble.append(
-                    Problem(
-                        f"its {what} changed when it was locked",
-                        self.camera,
-                        "keep still and lock again; if it stays so, the camera does not take orders",
-                    )
-                )
-        self.trouble = tuple(trouble)
+        self.trouble = tuple(
+            Problem(
+                f"its {what} changed when it was locked",
+                self.camera,
+                "keep still and lock again; if it stays so, the camera does not take orders",
+            )
+            for what, before, now, tolerance in (
+                ("brightness", brightness, look.brightness, _BRIGHTNESS_TOLERANCE),
+                ("colour", warmth, look.warmth, _WARMTH_TOLERANCE),
+            )
+            if not _alike(now, before, tolerance)
+        )
         self.controls = self._locks.keep(self.camera, self._mains_hz)
         self.phase, self._since_ns, self._judged_ns = LockPhase.LOCKED, now_ns, now_ns

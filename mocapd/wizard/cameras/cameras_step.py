@@ -218,9 +218,8 @@ class CamerasStep:
             if frame is None or locking.phase is not LockPhase.LOCKED or not self._is_live(name):
                 self._light.pop(name, None)
                 continue
-            self._light[name] = light_problems(
-                name, frame.pixels, locking.flicker, locking.exposure_s
-            )
+            light = light_problems(name, frame.pixels, locking.flicker, locking.exposure_s)
+            self._light[name] = tuple(light)
 
     def _write_draft(self) -> None:
         cameras = tuple(

@@ -99,7 +99,7 @@ class CheckStep:
     def enter(self) -> None:
         draft = self._context.draft
         self._context.scene(Scene.MOVING if draft.has_shirt else Scene.EMPTY)
-        self._problems = missing_inputs(draft)
+        self._problems = tuple(missing_inputs(draft))
         if self._problems:
             self._phase = Phase.MISSING
             return

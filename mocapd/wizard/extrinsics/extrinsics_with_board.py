@@ -3,6 +3,7 @@
 Its commands are `extrinsics_verbs.BOARD_ROOM`.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 from enum import StrEnum
 from itertools import combinations
@@ -153,7 +154,7 @@ class ExtrinsicsWithBoard:
             state,
             self._sentence(),
             self._progress(),
-            self._problems(),
+            tuple(self._problems()),
             {} if self._stage is BoardPhase.DONE else overlays,
             self._details(),
         )
@@ -290,36 +291,33 @@ class ExtrinsicsWithBoard:
             return 0.75 + 0.2 * min(1.0, self._rest.since_ns / LONG_NS)
         return 0.7 * self._collection.progress
 
-    def _problems(self) -> tuple[Problem, ...]:
-        problems = list(stopped_cameras(self._context))
-        if self._stage is not BoardPhase.COLLECT and self._made is not None and self._made.gluing:
-            trouble = gluing_trouble(self._made.gluing)
-            problems += [Problem(trouble, "the board")] if trouble else []
+    def _problems(self) -> Iterator[Problem]:
+        yield from stopped_cameras(self._context)
+        gluing = None if self._made is None else self._made.gluing
+        if self._stage is not BoardPhase.COLLECT and gluing and (trouble := gluing_trouble(gluing)):
+            yield Problem(trouble, "the board")
         if self._stage is BoardPhase.DONE:
             if not self._context.draft.floor_known:
-                problems.append(
-                    Problem(
-                        "the floor is guessed: up from the cameras, height from the board's lowest place",
-                        "the floor",
-                        "begin again and lay the board on the floor for a true one",
-                    )
+                yield Problem(
+                    "the floor is guessed: up from the cameras, height from the board's lowest place",
+                    "the floor",
+                    "begin again and lay the board on the floor for a true one",
                 )
-            return tuple(problems)
-        problems += [self._refusal] if self._refusal is not None else []
+            return
+        if self._refusal is not None:
+            yield self._refusal
         patient = self._begun_ns is None or self._now_ns - self._begun_ns < _PATIENCE_NS
         if self._stage is BoardPhase.COLLECT and not patient:
-            problems += [
-                Problem(
+            for name in self._collection.lonely():
+                yield Problem(
                     "it never sees the board at the same moment as another camera",
                     self._names[name],
                     "hold the board still where it and another camera see it, or turn them together"
                     + ("" if self._spec.two_sided else _FACING),
                 )
-                for name in self._collection.lonely()
-            ]
         # for the floor one camera with the board is enough
         wanted = {camera.id: self._stage is BoardPhase.COLLECT for camera in self._cameras}
-        return (*problems, *self._advice.problems(self._now_ns, wanted))
+        yield from self._advice.problems(self._now_ns, wanted)
 
     def _details(self) -> dict[str, Json]:
         return {

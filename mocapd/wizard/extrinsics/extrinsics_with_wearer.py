@@ -7,6 +7,7 @@ search.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -142,7 +143,8 @@ class ExtrinsicsWithWearer:
 
     def view(self) -> StepView:
         state, sentence, progress = self._status()
-        return StepView(state, sentence, progress, self._problems(), {}, self._details())
+        problems = tuple(self._problems())
+        return StepView(state, sentence, progress, problems, {}, self._details())
 
     @property
     def _busy(self) -> bool:
@@ -180,20 +182,18 @@ class ExtrinsicsWithWearer:
         percent = 2.0 * max(uncertainty.distance_percent for uncertainty in uncertainties)
         return f" to about {turn_deg:.0f}° and {percent:.0f} %"
 
-    def _problems(self) -> tuple[Problem, ...]:
-        problems = list(stopped_cameras(self._context))
-        missing = self._missing()
-        problems += [missing] if missing is not None else []
-        problems += [self._refusal] if self._refusal is not None else []
-        if self._found is not None and not self._busy and self._refusal is None:
-            problems.append(
-                Problem(
-                    "a room without a board is coarser than one with it",
-                    "room",
-                    "use the board when positions matter to the centimetre",
-                )
+    def _problems(self) -> Iterator[Problem]:
+        yield from stopped_cameras(self._context)
+        if (missing := self._missing()) is not None:
+            yield missing
+        if self._refusal is not None:
+            yield self._refusal
+        elif self._found is not None and not self._busy:
+            yield Problem(
+                "a room without a board is coarser than one with it",
+                "room",
+                "use the board when positions matter to the centimetre",
             )
-        return tuple(problems)
 
     def _details(self) -> dict[str, Json]:
         solution, draft = self._found, self._context.draft

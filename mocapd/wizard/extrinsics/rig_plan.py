@@ -50,7 +50,7 @@ def plan_of_cameras(rig: Rig) -> dict[str, Json]:
 
 def advice_of(rig: Rig | None) -> tuple[Problem, ...]:
     """Improvements of the rig."""
-    return () if rig is None else rig_advice(visible_floor(rig), len(rig.cameras))
+    return () if rig is None else tuple(rig_advice(visible_floor(rig), len(rig.cameras)))
 
 
 def area_shapes(rig: Rig | None) -> Mapping[str, tuple[Shape, ...]]:
