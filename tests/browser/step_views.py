@@ -87,7 +87,7 @@ def lens(views: int = 7, state: StepState = StepState.WAITING) -> StepView:
 def room(state: StepState = StepState.WAITING, stage: str = "floor") -> StepView:
     done = stage == "done"
     quality: Json = {
-        "rms_px": 0.31, "play_area_cm": 0.42, "cameras": {name: {"rms_px": 0.3} for name in NAMES}, "positions": 9,
+        "rms_px": 0.31, "play_area_cm": 0.42, "cameras": {name: {"rms_px": 0.3} for name in NAMES},
     }  # fmt: skip
     boards_m = [[0.3, 1.0, 0.2], [-0.4, 1.2, 0.1], [0.1, 0.9, -0.6]]
     advice = tuple(rig_advice(visible_floor(PAIR), 2)) if done else ()
@@ -129,8 +129,8 @@ def body(measured: bool = False) -> StepView:
         1.0 if measured else 0.3,
         details={
             "stature_m": 1.75, "has_shirt": True, "measuring": False, "can_measure": True, "why_not": "",
-            "measured": measured, "lengths_cm": {"upper arm": 29.0}, "usual_cm": {"upper arm": 29.0}, "factors": {},
-            "pictures": [], "match": None,
+            "measured": measured, "lengths_cm": {"upper arm": 29.0}, "usual_cm": {"upper arm": 29.0},
+            "pictures": [],
         },
     )  # fmt: skip
 

@@ -36,7 +36,6 @@ VERBS: Mapping[str, tuple[tuple[str, Args], ...]] = {
     ),
     StepName.ROOM: (
         ("method", {"method": "wearer"}),
-        ("method", {"wearer": True}),
         ("floor", {}),
         ("skip_floor", {}),
         ("solve", {}),

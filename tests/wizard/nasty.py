@@ -208,7 +208,7 @@ def attack_each(folder: Path, name: StepName, draft: Draft, wearer: bool = False
         attack.say(verb, arguments(kind, VALUES, "nobody_asked_for"))
         if name is StepName.ROOM:
             attack.begin()
-            attack.say("method", {"wearer": wearer})
+            attack.say("method", {"method": "wearer" if wearer else "board"})
     for verb in ("", "x" * 5000, "\ud800", "__class__", "view"):
         attack.say(verb, {})
     return attack.count

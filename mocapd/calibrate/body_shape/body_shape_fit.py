@@ -61,13 +61,11 @@ class BodyObservation:
 @dataclass(frozen=True, slots=True, eq=False)
 class ShapeFit:
     """factors (N,) of `body.shape`. measured (N,) and information (N,N): from the pictures alone, without the
-    prior of people's shapes; match: share of the drawn shirt that the pictures confirm; states: every observation's
-    pose in this shape; counted: indices of the inliers."""
+    prior of people's shapes; states: every observation's pose in this shape; counted: indices of the inliers."""
 
     factors: Floats
     measured: Floats
     information: Floats
-    match: float
     states: tuple[MotionState, ...]
     counted: tuple[int, ...]
 
@@ -146,7 +144,6 @@ def fit_shape(
         factors,
         factors + np.linalg.solve(evidence.H + 1e-3 * np.eye(model.n_shape), evidence.b),
         evidence.H,
-        float(np.mean([least_match_of(rows[k]) for k in counted])),
         tuple(states),
         tuple(counted),
     )

@@ -9,7 +9,7 @@ from mocapd.body.model import build_model
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.calibrate.body_shape.body_observations import PATIENCE_S, BodyObservations
 from mocapd.calibrate.body_shape.body_scale import Scale, scale_of
-from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit, fit_shape
+from mocapd.calibrate.body_shape.body_shape_fit import fit_shape
 from mocapd.clock import monotonic_ns, seconds
 from mocapd.config.sections import TrackerSection
 from mocapd.errors import InputError
@@ -38,7 +38,6 @@ class BodyMeasurement:
     body drawn over it."""
 
     shape: BodyShape
-    fit: ShapeFit
     scale: Scale
     pictures: dict[str, Bytes]
 
@@ -93,7 +92,6 @@ def measure(
     shown = fit.states[observations.pictured], observations.observations[observations.pictured]
     return BodyMeasurement(
         BodyShape(draft.stature_m, fit.factors),
-        fit,
         scale_of(fit, model, draft.floor_known),
         {
             camera.name: body_picture(observations.pictures[camera.name], camera, model, *shown, i)

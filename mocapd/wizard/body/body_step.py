@@ -6,7 +6,7 @@ Its commands are `body_verbs.BODY`.
 from collections.abc import Mapping
 from dataclasses import replace
 
-from mocapd.body.shape import FACTORS, BodyShape, mean_shape
+from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.calibrate.body_shape.body_scale import lengths_cm, scale_trouble
 from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.wizard.body.body_measuring import (
@@ -39,7 +39,6 @@ class BodyStep:
     def __init__(self, context: Context, make_tracker: MakeTracker = measuring_tracker) -> None:
         self._context, self._make_tracker = context, make_tracker
         self._watched: BodyWatch | None = None  # during a measuring job
-        self._measured: BodyMeasurement | None = None
         self._skipped = False
         self._measure_next = False
         self._times = 0  # completed measurements
@@ -97,7 +96,7 @@ class BodyStep:
         self._forget()  # proportions are relative to the stature
 
     def _forget(self) -> None:
-        self._measured, self._pictures, self._troubles = None, {}, ()
+        self._pictures, self._troubles = {}, ()
         self._context.draft = replace(self._context.draft, factors=None)
 
     def _start(self) -> None:
@@ -119,7 +118,7 @@ class BodyStep:
 
     def _found(self, measured: BodyMeasurement) -> None:
         draft = self._context.draft
-        self._measured, self._times = measured, self._times + 1
+        self._times += 1
         self._pictures = {
             f"body-{self._times}-{name}.jpg": encode_picture(pixels)
             for name, pixels in measured.pictures.items()
@@ -176,11 +175,7 @@ class BodyStep:
             "measured": draft.factors is not None,
             "lengths_cm": {} if shape is None else lengths_cm(shape),
             "usual_cm": {} if draft.stature_m is None else lengths_cm(mean_shape(draft.stature_m)),
-            "factors": {}
-            if draft.factors is None
-            else dict(zip(FACTORS, draft.factors.tolist(), strict=True)),
             "pictures": list(self._pictures),
-            "match": None if self._measured is None else self._measured.fit.match,
         }
         return StepView(
             state, sentence, progress, self._troubles, self._overlays(), details, self._pictures

@@ -55,7 +55,7 @@ class ExtrinsicsStep(StepAround):
 
     def command(self, command: Command) -> None:
         if isinstance(command, Method):
-            self._choose("wearer" if command.wearer else command.method)
+            self._choose(command.method)
         else:
             self.inner.command(command)
 

@@ -6,12 +6,11 @@ from mocapd.wizard.commands import Command, Verbs
 
 
 class Method(Command, frozen=True):
-    """The method of the extrinsics; wearer: true equals method: "wearer"."""
+    """The method of the extrinsics."""
 
     refused = "there is no such method"
     fix = "take board or wearer"
     method: Literal["board", "wearer"] = "board"
-    wearer: bool = False
 
 
 class Floor(Command, frozen=True):

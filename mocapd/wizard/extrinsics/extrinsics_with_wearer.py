@@ -200,22 +200,13 @@ class ExtrinsicsWithWearer:
         quality: dict[str, Json] | None = None
         plan: Json = None
         if solution is not None and draft.extrinsics_quality is not None:
-            report = solution.report
             quality = {
                 "rms_px": round(draft.extrinsics_quality.rms_px, 3),
                 "play_area_cm": None,
                 "cameras": {
-                    name: {"rms_px": round(px, 3)} for name, px in report.residual_px.items()
+                    name: {"rms_px": round(px, 3)}
+                    for name, px in solution.report.residual_px.items()
                 },
-                "rotation_deg": {
-                    name: round(uncertainty.rotation_deg, 2)
-                    for name, uncertainty in report.uncertainties.items()
-                },
-                "distance_percent": {
-                    name: round(uncertainty.distance_percent, 2)
-                    for name, uncertainty in report.uncertainties.items()
-                },
-                "match": round(report.match, 3),
             }
             step = max(1, len(solution.walked_m) // _SHOWN_PLACES)
             plan = {
@@ -226,7 +217,6 @@ class ExtrinsicsWithWearer:
             "stage": "done" if solution is not None else "collect",
             "solving": self._busy,
             "names": {camera.id: camera.label or camera.id for camera in draft.cameras},
-            "seen_s": {} if self._walk is None else dict(self._walk.visible_s),
             "floor_known": solution is not None,
             "quality": quality,
             "plan": plan,

@@ -31,7 +31,6 @@ def plan_of_cameras(rig: Rig) -> dict[str, Json]:
         "cell_m": CELL_M,
         "seen_m": np.round(visible.cells_m, 2).tolist(),
         "size_m": [round(side, 1) for side in visible.size_m],
-        "area_m2": round(visible.area_m2, 1),
         "baseline_m": round(visible.baseline_m, 2),
         "angle_deg": round(visible.angle_deg) if np.isfinite(visible.angle_deg) else None,
         "cameras": [
@@ -79,13 +78,5 @@ def quality_of(made: WorldExtrinsics) -> dict[str, Json]:
     return {
         "rms_px": round(made.rms_px, 3),
         "play_area_cm": round(made.play_area.median_cm, 2) if made.play_area else None,
-        "cameras": {
-            name: {
-                "rms_px": round(fit.rms_px, 3),
-                "views": fit.views,
-                "focal_percent": round(100.0 * fit.focal_deviation, 2),
-            }
-            for name, fit in made.cameras.items()
-        },
-        "positions": made.positions,
+        "cameras": {name: {"rms_px": round(fit.rms_px, 3)} for name, fit in made.cameras.items()},
     }

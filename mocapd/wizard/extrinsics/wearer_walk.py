@@ -1,7 +1,6 @@
 """The job of the extrinsics without a board: tracks the wearer in every camera alone, then solves."""
 
 import threading
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -39,9 +38,8 @@ class WearerExtrinsics:
 
 @dataclass(slots=True, eq=False)
 class Walk:
-    """Shared by the job and the step: visibility so far, and a request to stop."""
+    """Shared by the job and the step: a request to stop."""
 
-    visible_s: Mapping[str, float] = field(default_factory=dict)
     stop: threading.Event = field(default_factory=threading.Event)
 
 
@@ -119,7 +117,6 @@ def _follow(
             if frames is None:
                 continue
             coverage.add(tracks.add(frames), frames.t_ns)
-            walk.visible_s = dict(coverage.visible_s)
             progress(coverage.advice, READY + (SEEN - READY) * coverage.share)
         return True
     finally:

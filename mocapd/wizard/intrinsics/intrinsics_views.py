@@ -129,20 +129,15 @@ class CameraIntrinsics:
 
     def details(self) -> dict[str, Json]:
         """For the page."""
-        details: dict[str, Json] = {
+        return {
             "name": self.name,
             "views": len(self.picked.views),
             "covered": round(self.picked.covered_share, 3),
-            "coverage": self.picked.counts.tolist(),
-            "progress": round(self.progress(), 3),
             "lens": _figures(self.intrinsics) if self.intrinsics is not None else None,
             "so_far": _figures(self.usable) if self.usable is not None else None,
             "taken": self.taken is not None,
-            "offered": None,
+            "offered": None if self.offered is None else {"when": self.offered.when},
         }
-        if self.offered is not None:
-            details["offered"] = {**_figures(self.offered.intrinsics), "when": self.offered.when}
-        return details
 
 
 def _coverage_counts(picked: PickedViews) -> list[tuple[tuple[int, int], int]]:
@@ -160,9 +155,6 @@ def _figures(intrinsics: Intrinsics) -> dict[str, Json]:
         "rms_px": _round(intrinsics.rms_px, 3),
         "held_out_px": _round(intrinsics.held_out_px, 3),
         "focal_percent": _round(100.0 * intrinsics.focal_deviation, 2),
-        "focal_px": _round(float(intrinsics.K[0, 0]), 1),
-        "views": len(intrinsics.views),
-        "thrown_out": len(intrinsics.thrown_out),
     }
 
 
