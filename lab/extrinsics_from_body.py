@@ -122,7 +122,7 @@ def _onto(truth: Truth, track: RecordedTrack) -> RecordedTrack:
     seen = track.joints_m[rows.track_rows][:, mine]
     true = truth.joints_m[rows.truth_rows][:, theirs]
     best = relative_pose(seen.reshape(-1, 3), true.reshape(-1, 3), np.ones(true[..., 0].size))
-    return replace(track, joints_m=best.second_from_first.apply(track.joints_m))
+    return replace(track, joints_m=best.apply(track.joints_m))
 
 
 def main() -> None:

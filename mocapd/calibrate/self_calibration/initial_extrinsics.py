@@ -23,7 +23,7 @@ def initial_extrinsics(
     placed: dict[str, Camera] = {alone[0].name: alone[0]}
     while len(placed) < len(alone):
         candidates = [
-            (_common(observations, a, b.name), a, b)
+            ([m for m in observations if a in m and b.name in m], a, b)
             for a in placed
             for b in alone
             if b.name not in placed
@@ -43,15 +43,10 @@ def initial_extrinsics(
                 for a, b in zip(first, second, strict=True)
             ]
         )
-        pose = relative_pose(
+        new_from_old = relative_pose(
             np.concatenate([s.joints_m[MARKS] for s in first]),
             np.concatenate([s.joints_m[MARKS] for s in second]),
             weights.ravel(),
         )
-        old_from_world = camera_from_world(placed[old])
-        placed[new.name] = with_extrinsics(new, pose.second_from_first @ old_from_world)
+        placed[new.name] = with_extrinsics(new, new_from_old @ camera_from_world(placed[old]))
     return [placed[camera.name] for camera in alone]
-
-
-def _common(observations: Sequence[PatchObservation], a: str, b: str) -> list[PatchObservation]:
-    return [m for m in observations if a in m and b in m]

@@ -5,10 +5,7 @@ matrix of common points, lost on the same marks: a person in the middle of a roo
 degrees off where this was 2.5 and 4.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
 
 from mocapd.errors import ConfigError
 from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform, align_points
@@ -22,26 +19,16 @@ _ROUNDS = 20
 _MOVE = "walk about, turn and move the arms where both cameras see the shirt"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RelativePose:
-    """inliers (N,): mask of the given points that agree with it."""
-
-    second_from_first: RigidTransform
-    inliers: NDArray[np.bool_]
-
-
-def relative_pose(first_m: Floats, second_m: Floats, weights: Floats) -> RelativePose:
-    """From the same points (N,3) of a body in both cameras' frames, with weights (N,) >= 0.
+def relative_pose(first_m: Floats, second_m: Floats, weights: Floats) -> RigidTransform:
+    """second_from_first, from the same points (N,3) of a body in both cameras' frames, with weights (N,) >= 0.
 
     Least squares, re-weighted by Geman-McClure.
     Raises ConfigError for too few points, or points that do not agree.
     """
-    if np.count_nonzero(weights > 0.0) < _LEAST_POINTS:
+    count = np.count_nonzero(weights > 0.0)
+    if count < _LEAST_POINTS:
         raise ConfigError(
-            f"{np.count_nonzero(weights > 0.0)} joints are seen by both cameras, "
-            f"{_LEAST_POINTS} are needed",
-            "room",
-            _MOVE,
+            f"{count} joints are seen by both cameras, {_LEAST_POINTS} are needed", "room", _MOVE
         )
     weight = weights.copy()
     second_from_first = IDENTITY
@@ -50,12 +37,11 @@ def relative_pose(first_m: Floats, second_m: Floats, weights: Floats) -> Relativ
         r2 = ((second_from_first.apply(first_m) - second_m) ** 2).sum(axis=1)
         weight = weights * (_SCALE_M**2 / (_SCALE_M**2 + r2)) ** 2
     away = np.linalg.norm(second_from_first.apply(first_m) - second_m, axis=1)
-    inliers = (weights > 0.0) & (away < _NEAR_M)
-    share = np.count_nonzero(inliers) / np.count_nonzero(weights > 0.0)
+    share = np.count_nonzero((weights > 0.0) & (away < _NEAR_M)) / count
     if share < _LEAST_SHARE:
         raise ConfigError(
             f"only {100 * share:.0f} % of the joints agree on where the cameras stand",
             "room",
             "check that each lens belongs to its camera and no picture is mirrored, then " + _MOVE,
         )
-    return RelativePose(second_from_first, inliers)
+    return second_from_first
