@@ -81,7 +81,7 @@ def test_projection_is_that_of_the_cameras() -> None:
     error = residuals_px(scene, seen)
     for n in (0, 33, 177):
         v = seen.view[n]
-        at = (world.world_from_scene @ scene.scene_from_board[v]).apply(seen.point_m[n])
+        at = (world @ scene.scene_from_board[v]).apply(seen.point_m[n])
         px = project(rig.cameras[seen.camera[n]], at)
         np.testing.assert_allclose(px - seen.pixels[n], error[n], atol=1e-8)
 

@@ -39,6 +39,10 @@ from mocapd.geometry.reprojection import INTRINSICS, camera_matrix, intrinsics_r
 from mocapd.geometry.rigid_transforms import IDENTITY, RigidTransform, concatenate, stack
 from mocapd.types import Floats, Rig
 
+_GUESSED = (
+    "no floor was given: up is guessed from the cameras, the floor is put under the lowest "
+    "place of the board; give the frame in which the board lies on the floor (--floor-frame)"
+)
 _NINE_IN_TEN = 1.645  # standard deviations, of one direction, which mostly outweighs the others
 
 
@@ -236,7 +240,7 @@ def place_in_world(
         cameras,
         len(extrinsics.indices),
         None if area is None else area.with_places(place_cm),
-        world.note,
+        _GUESSED if floor is None else "",
         None if deviation is None else gluing_of(scene.back, deviation),
     )
     _refuse_bad(made, area, params, extrinsics.spec)

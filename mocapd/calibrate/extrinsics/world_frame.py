@@ -16,14 +16,6 @@ from mocapd.types import Camera, Floats, Rig
 _FRONT = 0.2  # least length of the mean direction to the cameras that defines a front
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class WorldFrame:
-    """The scene in the world, and a remark for the user on its origin ("": none)."""
-
-    world_from_scene: RigidTransform
-    note: str = ""
-
-
 @dataclass(frozen=True, slots=True)
 class PlayAreaError:
     """Distance of triangulated corners from a rigid board fitted to them [cm]; with the uncertainty of the cameras'
@@ -45,8 +37,8 @@ def world_on_floor(
     middle_m: Floats,
     where: str,
     two_sided: bool = False,
-) -> WorldFrame:
-    """The world of a board that lies on the floor, face up, at this position; its middle is the origin.
+) -> RigidTransform:
+    """world_from_scene of a board that lies on the floor, face up, at this position; its middle is the origin.
 
     +Z points from there to the middle of the cameras, which a person at rest faces. Raises ConfigError for cameras
     under the floor.
@@ -67,20 +59,16 @@ def world_on_floor(
             where,
             "lay the board flat on the floor, printed side up, and give the frame in which it lies",
         )
-    return WorldFrame(world)
+    return world
 
 
-def guess_world(scene: ReprojectionProblem, board_m: Floats) -> WorldFrame:
-    """A world without a floor: up is up in most pictures, the floor is below the lowest corner."""
+def guess_world(scene: ReprojectionProblem, board_m: Floats) -> RigidTransform:
+    """world_from_scene without a floor: up is up in most pictures, the floor is below the lowest corner."""
     up = -scene.camera_from_scene.R[:, 1].sum(axis=0)
     corners = scene.scene_from_board[:, None].apply(board_m).reshape(-1, 3)
     world = _world(scene, up, corners.mean(axis=0))
     lowest_m = float(world.apply(corners)[:, 1].min())
-    return WorldFrame(
-        RigidTransform(world.R, world.t_m - np.array([0.0, lowest_m, 0.0])),
-        "no floor was given: up is guessed from the cameras, the floor is put under the lowest "
-        "place of the board; give the frame in which the board lies on the floor (--floor-frame)",
-    )
+    return RigidTransform(world.R, world.t_m - np.array([0.0, lowest_m, 0.0]))
 
 
 def _world(scene: ReprojectionProblem, up: Floats, origin_m: Floats) -> RigidTransform:
@@ -103,7 +91,7 @@ def camera_centres(scene: ReprojectionProblem) -> Floats:
 
 
 def rig_in_world(
-    world: WorldFrame,
+    world_from_scene: RigidTransform,
     scene: ReprojectionProblem,
     names: Sequence[str],
     sizes_px: Sequence[tuple[int, int]],
@@ -113,8 +101,8 @@ def rig_in_world(
     for i, (name, size_px) in enumerate(zip(names, sizes_px, strict=True)):
         camera_from_scene, row = scene.camera_from_scene[i], scene.intrinsics[i]
         # project back onto rotations, from which a thousand products drift
-        R = nearest_rotation(camera_from_scene.R @ world.world_from_scene.R.T)
-        t_m = camera_from_scene.t_m - R @ world.world_from_scene.t_m
+        R = nearest_rotation(camera_from_scene.R @ world_from_scene.R.T)
+        t_m = camera_from_scene.t_m - R @ world_from_scene.t_m
         cameras.append(Camera(name, size_px, camera_matrix(row), row[4:].copy(), R, t_m))
     return Rig(tuple(cameras))
 
