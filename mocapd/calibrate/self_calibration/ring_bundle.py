@@ -6,8 +6,6 @@ From afar the pictures alone leave the orbit of the camera about the wearer near
 arms determine it [Koenderink and van Doorn, Affine structure from motion, 1991].
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from mocapd.body.skeleton import INDEX, standard_skeleton
@@ -27,17 +25,6 @@ _ROUNDS = 25
 _GENTLE = 3  # first rounds, before rejecting outliers
 _POINT_TAIL, _LENGTH_TAIL = 4.0, 6.0  # Geman-McClure, squared standard deviations
 _LARGEST_STEP, _FARTHEST_M = 0.2, 0.3
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class RingSystem:
-    """Normal equations of camera motion and lengths, N_CAMERA + P - 1 unknowns: H, b, points eliminated; back
-    (G,3P,n), own (G,3P): derivative of the points by a step, and their own step."""
-
-    H: Floats
-    b: Floats
-    back: Floats
-    own: Floats
 
 
 def lengths_m(stature_m: float) -> Floats:
@@ -61,14 +48,13 @@ def place_by_rings(
     gain = min(_MOST, _INDEPENDENT / max(len(pairs.visible), 1))
     camera, lengths = second, usual.copy()
     points = _start(pairs, first, second)
-    H = information
     for i in range(_ROUNDS):
-        system = ring_system(pairs, first, camera, lengths, points, robust=i >= _GENTLE)
+        H, b, back, own = _ring_system(pairs, first, camera, lengths, points, robust=i >= _GENTLE)
         away = np.concatenate([_motion(second, camera), lengths - usual])
-        H = gain * system.H + information
-        step = np.linalg.solve(H, gain * system.b - information @ away)
+        H = gain * H + information
+        step = np.linalg.solve(H, gain * b - information @ away)
         step *= min(1.0, _LARGEST_STEP / max(float(np.abs(step).max()), 1e-12))
-        moved = (system.own - system.back @ step).reshape(points.shape)
+        moved = (own - back @ step).reshape(points.shape)
         far = np.linalg.norm(moved, axis=-1, keepdims=True)
         points = points + moved * np.minimum(1.0, _FARTHEST_M / np.maximum(far, 1e-9))
         camera = move_camera(camera, step[:N_CAMERA])
@@ -76,10 +62,11 @@ def place_by_rings(
     return camera, np.asarray(np.linalg.inv(H)[:N_CAMERA, :N_CAMERA], dtype=np.float64)
 
 
-def ring_system(
+def _ring_system(
     pairs: RingPairs, first: Camera, second: Camera, lengths: Floats, points: Floats, robust: bool
-) -> RingSystem:
-    """The rows of all rings and lengths; points (G,P,3) [m, world]."""
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Normal equations H, b of camera motion and lengths, n = N_CAMERA + P - 1, from the rows of all rings and lengths, with
+    the points (G,P,3) [m, world] eliminated; (G,3P,n) and (G,3P): derivative of the points by a step, and their own step."""
     G, P = pairs.visible.shape
     n = N_CAMERA + P - 1
     Hxx, Hxc = np.zeros((G, 3 * P, 3 * P)) + 1e-2 * np.eye(3 * P), np.zeros((G, 3 * P, n))
@@ -117,7 +104,7 @@ def ring_system(
     back: Floats = np.asarray(np.linalg.solve(Hxx, Hxc), dtype=np.float64)
     own: Floats = np.asarray(np.linalg.solve(Hxx, bx[..., None])[..., 0], dtype=np.float64)
     H = Hcc - np.einsum("gxi,gxj->ij", Hxc, back)
-    return RingSystem(H, bc - np.einsum("gxi,gx->i", Hxc, own), back, own)
+    return H, bc - np.einsum("gxi,gx->i", Hxc, own), back, own
 
 
 def _ring_rows(
