@@ -7,7 +7,7 @@ import numpy as np
 
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import ConfigError
-from mocapd.printing.paper_sizes import RULER_HEIGHT_MM, Size, paper_size_mm
+from mocapd.printing.paper_sizes import RULER_HEIGHT_MM, Size, both_ways_mm
 
 MIN_SQUARE_MM = 10.0  # a webcam a metre away cannot resolve the cells of a smaller marker
 _MARKER_SHARE = 0.75  # of a square's side
@@ -52,7 +52,7 @@ def fitted_board(
     """The board with the largest squares of whole millimetres that fit on the paper, or with the given square.
     Raises ConfigError when it does not fit, or its squares are too small for a webcam."""
     size = f"{columns}x{rows}"
-    most_mm = max(_most_mm(page, columns, rows, two_sided) for page in _pages_mm(paper))
+    most_mm = max(_most_mm(page, columns, rows, two_sided) for page in both_ways_mm(paper))
     side_mm = np.floor(most_mm) if square_m is None else square_m * 1000
     if side_mm > most_mm + _EPSILON_MM:
         raise ConfigError(
@@ -95,7 +95,7 @@ def layout_of(board: BoardSpec, paper: str) -> Layout:
     def most_mm(page_mm: Size) -> float:
         return _most_mm(page_mm, board.columns, board.rows, board.two_sided)
 
-    page_mm = max(_pages_mm(paper), key=most_mm)
+    page_mm = max(both_ways_mm(paper), key=most_mm)
     x, y, _, _ = _area(page_mm, board.two_sided)
     width, height = (board.columns * board.square_m * 1000, board.rows * board.square_m * 1000)
     return Layout(
@@ -126,12 +126,6 @@ def _crosses(board: Rect) -> dict[str, Size]:
     left, right = x - _CROSS_MM, x + width + _CROSS_MM
     below, above = y - _CROSS_MM, y + height + _CROSS_MM
     return {"A": (left, above), "B": (right, above), "C": (right, below), "D": (left, below)}
-
-
-def _pages_mm(paper: str) -> tuple[Size, Size]:
-    """Portrait and landscape."""
-    width, height = paper_size_mm(paper)
-    return (width, height), (height, width)
 
 
 def _area(page_mm: Size, two_sided: bool) -> Rect:

@@ -11,7 +11,7 @@ from reportlab.pdfgen.canvas import FILL_EVEN_ODD, Canvas
 from mocapd.calibration.board_spec import BoardSpec, aruco_board
 from mocapd.printing.board_layout import EDGE_MM, Layout, Rect, layout_behind, layout_of
 from mocapd.printing.paper_sizes import RULER_MM
-from mocapd.printing.pdf_document import BLACK, BOLD, DARK, About, Document, draw_ruler, write_text
+from mocapd.printing.pdf_document import BLACK, BOLD, DARK, Document, draw_ruler, write_text
 
 _ARM_MM = 3.5  # of a cross, on each side of its middle
 _COURIER_ADVANCE = 0.6  # of each letter, in ems
@@ -44,11 +44,9 @@ def board_pdf(board: BoardSpec, paper: str) -> bytes:
     layout = layout_of(board, paper)
     kind = "ChArUco board, inverted" if board.inverted else "ChArUco board"
     document = Document(
-        About(
-            f"mocapd {kind} {board.columns}x{board.rows}",
-            f"{kind} for camera calibration, {paper}; print at 100 %",
-            flags_of(board),
-        )
+        f"mocapd {kind} {board.columns}x{board.rows}",
+        f"{kind} for camera calibration, {paper}; print at 100 %",
+        flags_of(board),
     )
     title = f"FRONT: {kind}" if board.two_sided else kind
     canvas = document.page(layout.page_mm, title)

@@ -16,6 +16,12 @@ RULER_HEIGHT_MM = 8.0
 Size = tuple[float, float]
 
 
+def both_ways_mm(paper: str) -> tuple[Size, Size]:
+    """Portrait and landscape. Raises ConfigError."""
+    width, height = paper_size_mm(paper)
+    return (width, height), (height, width)
+
+
 def paper_size_mm(paper: str) -> Size:
     """Portrait width and height [mm] by name, in any case. Raises ConfigError for other names."""
     for name, size in PAPERS_MM.items():

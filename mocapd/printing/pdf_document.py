@@ -2,7 +2,6 @@
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from reportlab.pdfgen.canvas import Canvas
@@ -21,15 +20,6 @@ _POINTS_PER_MM = 72 / 25.4
 _CAP_HEIGHT = 0.72  # of Helvetica, in ems
 
 
-@dataclass(frozen=True, slots=True)
-class About:
-    """A PDF's metadata; `keywords` carries the parameters for programs to read."""
-
-    title: str
-    subject: str
-    keywords: str
-
-
 class Document:
     """A PDF whose unit is the millimetre, origin at the lower left, y up.
 
@@ -37,12 +27,13 @@ class Document:
     without scaling.
     """
 
-    def __init__(self, about: About) -> None:
+    def __init__(self, title: str, subject: str, keywords: str) -> None:
+        """keywords: the parameters, for programs to read."""
         self._buffer = io.BytesIO()
         self._canvas = Canvas(self._buffer, invariant=1, pageCompression=1)
-        self._canvas.setTitle(about.title)
-        self._canvas.setSubject(about.subject)
-        self._canvas.setKeywords(about.keywords)
+        self._canvas.setTitle(title)
+        self._canvas.setSubject(subject)
+        self._canvas.setKeywords(keywords)
         self._canvas.setAuthor("mocapd")
         self._canvas.setCreator("mocapd")
         self._canvas.setViewerPreference("PrintScaling", "None")

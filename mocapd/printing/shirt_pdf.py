@@ -5,7 +5,7 @@ from reportlab.pdfgen.canvas import Canvas
 from mocapd.errors import ConfigError
 from mocapd.printing.cielab import lab_from_srgb
 from mocapd.printing.paper_sizes import RULER_HEIGHT_MM, Size, paper_size_mm
-from mocapd.printing.pdf_document import BOLD, DARK, About, Document, draw_ruler, write_text
+from mocapd.printing.pdf_document import BOLD, DARK, Document, draw_ruler, write_text
 from mocapd.printing.shirt_drawing import (
     centre_of,
     colour_of,
@@ -47,12 +47,11 @@ def shirt_pdf(size: str, paper: str = "A4", layout: str = "sewing") -> bytes:
     if layout not in LAYOUTS:
         raise ConfigError(f"no layout {layout!r}", "--layout", f"choose {' or '.join(LAYOUTS)}")
     pieces = tuple((piece, tiling_of(piece.cut, paper)) for piece in pieces_of(measures))
-    about = About(
+    document = Document(
         f"mocapd shirt {shirt.version}, size {size}",
         f"Pattern for {layout} at true size; print at 100 %",
         f"shirt={shirt.version} size={size} seam_mm={SEAM_MM:g} hem_mm={HEM_MM:g}",
     )
-    document = Document(about)
     _overview(document.page(paper_mm, "Overview"), paper_mm, size, measures, pieces, layout)
     _swatch_card(document.page(paper_mm, "Swatch card"), paper_mm, shirt)
     if layout == "sewing":

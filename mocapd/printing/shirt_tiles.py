@@ -8,7 +8,7 @@ from string import ascii_uppercase
 import numpy as np
 from reportlab.pdfgen.canvas import Canvas
 
-from mocapd.printing.paper_sizes import Size, paper_size_mm
+from mocapd.printing.paper_sizes import Size, both_ways_mm
 from mocapd.printing.pdf_document import BOLD, DARK, PALE, write_text
 from mocapd.types import Floats
 
@@ -61,17 +61,14 @@ def tiling_of(polygon: Floats, paper: str) -> Tiling:
     low, high = polygon.min(axis=0), polygon.max(axis=0)
     size = high - low + 2 * _SPARE_MM
     centre = 0.5 * (low + high)
-    width, height = paper_size_mm(paper)
-    best: Tiling | None = None
-    for page in ((width, height), (height, width)):
-        frame = _frame(page)
+
+    def tiling(page_mm: Size) -> Tiling:
+        frame = _frame(page_mm)
         columns, rows = ceil(size[0] / frame[0]), ceil(size[1] / frame[1])
         top_left = centre + 0.5 * np.array([-columns * frame[0], rows * frame[1]])
-        tiling = Tiling(page, rows, columns, (float(top_left[0]), float(top_left[1])))
-        if best is None or rows * columns < best.rows * best.columns:
-            best = tiling
-    assert best is not None
-    return best
+        return Tiling(page_mm, rows, columns, (float(top_left[0]), float(top_left[1])))
+
+    return min(map(tiling, both_ways_mm(paper)), key=lambda one: one.rows * one.columns)
 
 
 def draw_tile(canvas: Canvas, tiling: Tiling, tile: Tile, form: str, foot: str) -> None:
