@@ -15,7 +15,6 @@ from mocapd.calibrate.extrinsics.folder_calibration import (
     FolderParams,
     calibrate_folder,
 )
-from mocapd.calibrate.intrinsics.views import Choice
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import ConfigError, InputError
 from mocapd.geometry.camera_model import centre, normalised, project
@@ -182,7 +181,7 @@ def test_real_webcams(shared_dir: Path, tmp_path: Path) -> None:
     board = BoardSpec(BoardKind.CHARUCO, 4, 5, 0.054, 0.0405)  # inverted, which it finds itself
     for video in sorted(folder.glob("*.mp4"))[:3]:
         (tmp_path / video.name).symlink_to(video)
-    params = FolderParams(most_pictures=20, choice=Choice(most=12))
+    params = FolderParams(most_pictures=20, most_views=12)
     found = calibrate_folder(tmp_path, board, quiet, params=params)
     reference = json.loads((folder / "calib_opencv.json").read_text())["cameras"]
     assert found.board.inverted

@@ -7,7 +7,7 @@ import pytest
 
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.intrinsics import solve_intrinsics
-from mocapd.calibrate.intrinsics.views import Choice, choose_views, coverage, covered_share
+from mocapd.calibrate.intrinsics.views import choose_views, coverage, covered_share
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.types import Floats
@@ -86,10 +86,10 @@ def test_too_few_views_and_a_bent_board_are_refused() -> None:
 def test_blurred_views_are_left_and_the_picture_is_filled() -> None:
     views = views_at(held_poses(60))
     soft = [replace(view, sharpness=0.1) if view.index % 3 == 0 else view for view in views]
-    taken = choose_views(soft, SIZE_PX, Choice(most=12))
+    taken = choose_views(soft, SIZE_PX, 12)
     assert len(taken) == 12
     assert all(view.index % 3 for view in taken)
     first = [view for view in soft if view.index % 3][:12]
     assert covered_share(taken, SIZE_PX) >= covered_share(first, SIZE_PX)
     assert coverage(taken, SIZE_PX).sum() == 12 * len(BOARD_M)
-    assert choose_views([], SIZE_PX, Choice()) == []
+    assert choose_views([], SIZE_PX, 30) == []

@@ -14,7 +14,6 @@ from mocapd.calibrate.extrinsics.folder_calibration import (
     refuse_contradicted_lenses,
 )
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
-from mocapd.calibrate.intrinsics.views import Choice
 from mocapd.errors import ConfigError
 from mocapd.types import Camera, Rig
 from tests.calibrate.moving_board import BOARD_M, SPEC, Clock, Session, record, rig_of
@@ -97,7 +96,7 @@ def test_a_camera_that_was_started_late(shared_dir: Path, folder: str, late: flo
     recordings = shared_dir / "findings" / "reports-2026-11-26" / folder
     if not recordings.is_dir():
         pytest.skip(f"{folder} is missing in ../shared")
-    params = FolderParams(most_pictures=40, densely=2, choice=Choice(most=12))
+    params = FolderParams(most_pictures=40, densely=2, most_views=12)
     found = calibrate_folder(recordings, SPEC, lambda *_: None, params=params)
     assert found.cameras["right"].delay_frames == pytest.approx(late, abs=0.1)
     assert any(f"right is {late:.1f} frames" in note for note in found.notes)

@@ -25,7 +25,6 @@ from mocapd.calibrate.extrinsics.folder_calibration import (
     calibrate_folder,
 )
 from mocapd.calibrate.intrinsics.intrinsics import solve_intrinsics
-from mocapd.calibrate.intrinsics.views import Choice
 from mocapd.calibration.board_spec import BoardKind, BoardSpec, corners_m
 from mocapd.errors import ConfigError
 from mocapd.sim.board.board_picture import BoardFilm, PrintedBoard
@@ -323,4 +322,4 @@ def test_a_real_camera_that_is_mirrored_is_named(shared_dir: Path, tmp_path: Pat
                 cv2.imwrite(str(target / f"{i:04d}.jpg"), shown)
     board = BoardSpec(BoardKind.CHARUCO, 4, 5, 0.054, 0.0405, inverted=True, two_sided=True)
     with pytest.raises(MirroredError, match=r"^cam_2: the pictures are mirrored"):
-        calibrate_folder(tmp_path, board, quiet, params=FolderParams(choice=Choice(most=8)))
+        calibrate_folder(tmp_path, board, quiet, params=FolderParams(most_views=8))

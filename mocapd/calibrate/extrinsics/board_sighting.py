@@ -19,13 +19,12 @@ from mocapd.calibrate.board.detection_diagnostics import (
     downscale,
     most_telling,
 )
-from mocapd.calibrate.intrinsics.intrinsics import IntrinsicsLimits
+from mocapd.calibrate.intrinsics.intrinsics import FEWEST_VIEWS
 from mocapd.calibration.board_spec import BoardKind, BoardSpec
 from mocapd.errors import ConfigError
 from mocapd.types import Bytes
 
 Progress = Callable[[str, int, int], None]
-FEWEST_VIEWS = IntrinsicsLimits().fewest_views
 _PROBES = 6  # pictures per camera that decide the board's variant
 _ASKED = 24  # pictures per camera without a board that may be diagnosed
 _ASKED_PX = 1280  # their width at most

@@ -22,8 +22,8 @@ from mocapd.calibrate.extrinsics.board_sighting import (
 )
 from mocapd.calibrate.extrinsics.folder_alignment import align_views
 from mocapd.calibrate.extrinsics.world_frame import PlayAreaError
-from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
-from mocapd.calibrate.intrinsics.views import Choice, choose_views, covered_share
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, solve_intrinsics
+from mocapd.calibrate.intrinsics.views import choose_views, covered_share
 from mocapd.calibrate.time_alignment.instants import Instants
 from mocapd.calibrate.time_alignment.time_alignment import TIME_FIX, AlignedTimes
 from mocapd.calibration.board_spec import BoardSpec, corners_m
@@ -31,7 +31,7 @@ from mocapd.errors import ConfigError
 from mocapd.types import Camera, Floats, Rig
 
 # A single camera may leave its focal length open where all together then determine it.
-_ALONE = IntrinsicsLimits(focal_deviation=0.25)
+_ALONE = 0.25  # relative standard deviation
 _LENS_SIGMAS = 5.0  # of a lens in the joint solution from its separate one
 _LENS_MODELS_DIFFER = 0.03  # part of the focal length that lens models differ by anyway
 
@@ -43,7 +43,7 @@ class FolderParams:
     most_pictures: int = 200  # instants for the extrinsics
     densely: int = 3  # times as many are examined, for the board's motion,
     least_hz: float = 10.0  # and of long recordings so many a second
-    choice: Choice = field(default_factory=Choice)
+    most_views: int = 30  # of one camera, for its intrinsics
     extrinsics: BoardExtrinsicsParams = field(default_factory=BoardExtrinsicsParams)
 
 
@@ -159,7 +159,7 @@ def _examined_frame(sightings: Sequence[BoardSighting], floor_frame: int, stride
 
 def _solve_camera(one: BoardSighting, board_m: Floats, params: FolderParams) -> Intrinsics:
     size_px = one.recording.size_px
-    views = choose_views(list(one.views.values()), size_px, params.choice)
+    views = choose_views(list(one.views.values()), size_px, params.most_views)
     return solve_intrinsics(views, board_m, size_px, one.recording.name, _ALONE)
 
 

@@ -18,14 +18,14 @@ from mocapd.calibrate.extrinsics.bundle_adjustment import BundleParams
 from mocapd.calibrate.extrinsics.contradictions import ContradictionError, MirroredError
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibrate.intrinsics.intrinsics_priors import IntrinsicsPriors, MeasuredIntrinsics
-from mocapd.calibrate.intrinsics.views import Choice, choose_views
+from mocapd.calibrate.intrinsics.views import choose_views
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.errors import ConfigError
 from mocapd.geometry.reprojection import intrinsics_row
 
 # positions are never of neighbouring frames, so there is no motion: one round is enough
 PARAMS = BoardExtrinsicsParams(bundle=BundleParams(rounds=1))
-_ALONE = Choice(most=12)  # pictures of one camera alone, for its intrinsics
+_ALONE = 12  # pictures of one camera alone, for its intrinsics
 _OWN_VIEWS = 8  # with fewer pictures its earlier intrinsics count
 _MOST_REFUSED = 0.15  # of the corners; with more, the cameras have moved between the steps
 # Deviations of earlier intrinsics: of the middle [picture widths] and of k1 k2 p1 p2 k3.

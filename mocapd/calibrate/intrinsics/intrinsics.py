@@ -29,18 +29,14 @@ _FOLDS = 4
 _CALIBRATE: Any = cv2.calibrateCameraExtended
 _USUAL_FOCAL = 0.95  # in picture widths
 _WORTH = 0.97  # a further coefficient must lower the held-out error to this part of it
-
-
-@dataclass(frozen=True, slots=True)
-class IntrinsicsLimits:
-    """Requirements for using intrinsics; errors of pictures up to 1280 px wide, in larger ones in proportion."""
-
-    fewest_views: int = 6
-    rms_px: float = 1.5
-    held_out_px: float = 2.0
-    least_tilt_rad: float = 0.17  # between the boards of the most different views
-    focal_deviation: float = 0.05  # standard deviation of the focal length, relative to it
-    view_rms: float = 2.5  # a view with more than this many times the median error is an outlier
+# requirements for using intrinsics
+FEWEST_VIEWS = 6
+_MOST_RMS_PX, _MOST_HELD_OUT_PX = (
+    1.5,
+    2.0,
+)  # of pictures up to 1280 px wide, in larger ones in proportion
+_LEAST_TILT_RAD = 0.17  # between the boards of the most different views
+_VIEW_RMS = 2.5  # a view with more than this many times the median error is an outlier
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,25 +78,24 @@ def solve_intrinsics(
     board_m: Floats,
     size_px: tuple[int, int],
     where: str,
-    limits: IntrinsicsLimits | None = None,
+    most_deviation: float = 0.05,
 ) -> Intrinsics:
     """The intrinsics of camera `where`. Raises ConfigError naming what is wrong with the views.
 
-    `board_m` (n,3): the board's corners by id.
+    `board_m` (n,3): the board's corners by id; most_deviation: standard deviation of the focal length, relative to it.
     """
-    limits = limits or IntrinsicsLimits()
-    if len(views) < limits.fewest_views:
+    if len(views) < FEWEST_VIEWS:
         raise ConfigError(
-            f"the board is usable in {len(views)} pictures, a lens needs {limits.fewest_views}",
+            f"the board is usable in {len(views)} pictures, a lens needs {FEWEST_VIEWS}",
             where,
             "show the board at more places and slants, in good light",
         )
     inliers = list(views)
     first = _solve(inliers, board_m, size_px, _MODELS[1], where)
-    _refuse_parallel(first, views, board_m, size_px, where, limits)
-    bad = first.per_view_px > max(limits.view_rms * float(np.median(first.per_view_px)), 0.5)
+    _refuse_parallel(first, views, board_m, size_px, where)
+    bad = first.per_view_px > max(_VIEW_RMS * float(np.median(first.per_view_px)), 0.5)
     inliers = [view for view, out in zip(views, bad, strict=True) if not out]
-    if len(inliers) < limits.fewest_views:
+    if len(inliers) < FEWEST_VIEWS:
         raise ConfigError(
             f"{int(bad.sum())} of {len(views)} views contradict the others",
             where,
@@ -108,7 +103,7 @@ def solve_intrinsics(
         )
     if bad.any():  # an outlier may have been the only view with another tilt
         first = _solve(inliers, board_m, size_px, _MODELS[1], where)
-        _refuse_parallel(first, inliers, board_m, size_px, where, limits)
+        _refuse_parallel(first, inliers, board_m, size_px, where)
     model, held_out_px = _best_model(inliers, board_m, size_px, where, first)
     solution = _solve(inliers, board_m, size_px, model, where, first)
     deviation = float((solution.deviations[:2] / np.diag(solution.K)[:2]).max())
@@ -123,7 +118,7 @@ def solve_intrinsics(
         tuple(view.index for view, out in zip(views, bad, strict=True) if out),
         deviation,
     )
-    _refuse_bad(intrinsics, where, limits)
+    _refuse_bad(intrinsics, where, most_deviation)
     return intrinsics
 
 
@@ -241,7 +236,6 @@ def _refuse_parallel(
     board_m: Floats,
     size_px: tuple[int, int],
     where: str,
-    limits: IntrinsicsLimits,
 ) -> None:
     """Parallel planes share their vanishing line and add nothing to one view (Zhang, section 4).
 
@@ -260,21 +254,21 @@ def _refuse_parallel(
         cosines = np.clip(normals @ normals.T, -1.0, 1.0)
         # a percentile, so that of many views one wrong one does not count as a tilt; of few it does, until it is thrown
         # out
-        if np.percentile(np.arccos(cosines), 95) < limits.least_tilt_rad:
+        if np.percentile(np.arccos(cosines), 95) < _LEAST_TILT_RAD:
             raise _parallel(where)
 
 
-def _refuse_bad(intrinsics: Intrinsics, where: str, limits: IntrinsicsLimits) -> None:
+def _refuse_bad(intrinsics: Intrinsics, where: str, most_deviation: float) -> None:
     larger = larger_than_hd(intrinsics.size_px)
     rms_px, held_out_px = intrinsics.rms_px / larger, intrinsics.held_out_px / larger
-    if rms_px > limits.rms_px or held_out_px > limits.held_out_px:
+    if rms_px > _MOST_RMS_PX or held_out_px > _MOST_HELD_OUT_PX:
         raise ConfigError(
             f"the board fits badly: {intrinsics.rms_px:.2f} px, {intrinsics.held_out_px:.2f} px held out",
             where,
             "keep the board flat and still, the focus locked, and check that --board-size, the "
             "layout and the pictures (not cropped or stabilised) are right",
         )
-    if intrinsics.focal_deviation > limits.focal_deviation:
+    if intrinsics.focal_deviation > most_deviation:
         raise ConfigError(
             f"the focal length is known to {100 * intrinsics.focal_deviation:.1f} % only",
             where,

@@ -1,7 +1,6 @@
 """Chooses views of the board for the intrinsics: sharp ones that together fill the picture."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,14 +9,7 @@ from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.types import Floats
 
 GRID = (8, 6)  # cells across and down in which coverage is counted
-
-
-@dataclass(frozen=True, slots=True)
-class Choice:
-    """The largest number of views, and their least sharpness relative to the best ones."""
-
-    most: int = 30
-    least_sharpness: float = 0.5  # of the 90th percentile of all views
+_LEAST_SHARPNESS = 0.5  # of the 90th percentile of all views
 
 
 def coverage(views: Sequence[BoardView], size_px: tuple[int, int]) -> NDArray[np.int64]:
@@ -40,30 +32,24 @@ def _cells(corners_px: Floats, size_px: tuple[int, int]) -> tuple[NDArray[np.int
     return cells[:, 0], cells[:, 1]
 
 
-def sharp_views(views: Sequence[BoardView], least: float) -> list[BoardView]:
-    """Those of at least `least` times the sharpness of the better ones (90th percentile)."""
-    if not views:
-        return []
-    limit = least * float(np.percentile([view.sharpness for view in views], 90))
-    return [view for view in views if view.sharpness >= limit]
-
-
 def choose_views(
-    views: Sequence[BoardView], size_px: tuple[int, int], choice: Choice
+    views: Sequence[BoardView], size_px: tuple[int, int], most: int
 ) -> list[BoardView]:
-    """At most `choice.most` sharp views, chosen greedily: each adds most to those before it.
+    """At most `most` sharp views, chosen greedily: each adds most to those before it.
 
     A view adds corners in cells that have few as yet, and a shape of the board (its place, size and slant in the
     picture) unlike those chosen. In the order of their index.
     """
-    rest = sharp_views(views, choice.least_sharpness)
-    if len(rest) <= choice.most:
+    sharpness = [view.sharpness for view in views]
+    limit = _LEAST_SHARPNESS * float(np.percentile(sharpness, 90)) if views else 0.0
+    rest = [view for view in views if view.sharpness >= limit]
+    if len(rest) <= most:
         return rest
     shapes = np.stack([_shape(view, size_px) for view in rest])
     counts = np.zeros((GRID[1], GRID[0]))
     distance = np.full(len(rest), 1.0)  # from the nearest chosen shape
     chosen: list[int] = []
-    for _ in range(choice.most):
+    for _ in range(most):
         gain = np.array([_gain(view, counts, size_px) for view in rest])
         score = (0.2 + gain) * distance * [view.sharpness for view in rest]
         score[chosen] = -1.0

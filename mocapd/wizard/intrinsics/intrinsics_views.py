@@ -4,16 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, IntrinsicsLimits, solve_intrinsics
+from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, solve_intrinsics
 from mocapd.calibrate.intrinsics.view_picking import Lack, PickedViews
-from mocapd.calibrate.intrinsics.views import GRID, Choice, choose_views
+from mocapd.calibrate.intrinsics.views import GRID, choose_views
 from mocapd.errors import MocapdError, Problem
 from mocapd.types import Floats
 from mocapd.wizard.draft import DraftCamera
 from mocapd.wizard.step import Json, Shape
 
-_LIMITS = IntrinsicsLimits(focal_deviation=0.05)
-_CHOICE = Choice(most=24)
+_MOST = 24  # pictures in a solution
 _FIRST_TRY = 10  # pictures, even if they lack something: the error then says what
 _NEXT_TRY = 4  # more pictures
 _ROWS = ("upper", "middle", "lower")
@@ -62,8 +61,8 @@ class CameraIntrinsics:
 
     def solve(self, views: Sequence[BoardView], board_m: Floats) -> Intrinsics:
         """For a job. Raises ConfigError that names the problem of the pictures."""
-        chosen = choose_views(views, self.camera.size_px, _CHOICE)
-        return solve_intrinsics(chosen, board_m, self.camera.size_px, self.name, _LIMITS)
+        chosen = choose_views(views, self.camera.size_px, _MOST)
+        return solve_intrinsics(chosen, board_m, self.camera.size_px, self.name)
 
     def take(self, intrinsics: Intrinsics, tried: int) -> None:
         """Take the job's intrinsics: the result if good enough, or the best so far."""
