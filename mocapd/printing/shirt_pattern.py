@@ -263,8 +263,7 @@ def _notches(curve: Floats, count: int) -> Floats:
 
 def _bezier(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats:
     t = np.linspace(0.0, 1.0, _CURVE_STEPS)[:, None]
-    curve: Floats = (1 - t) ** 3 * a + 3 * (1 - t) ** 2 * t * b + 3 * (1 - t) * t**2 * c + t**3 * d
-    return curve
+    return (1 - t) ** 3 * a + 3 * (1 - t) ** 2 * t * b + 3 * (1 - t) * t**2 * c + t**3 * d
 
 
 def _beyond(axis: int, sign: int, value: float = 0.0) -> HalfPlane:

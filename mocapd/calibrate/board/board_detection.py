@@ -173,8 +173,7 @@ def as_grey(pixels: Bytes) -> Bytes:
     """(h,w) of a picture (h,w,3) BGR, or of one that is grey already."""
     if pixels.ndim == 2:
         return pixels
-    grey: Bytes = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
-    return grey
+    return cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
 
 
 def edge_sharpness(grey: Bytes, corners_px: Floats) -> float:

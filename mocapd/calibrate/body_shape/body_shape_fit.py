@@ -172,8 +172,8 @@ class _Evidence:
             b = np.sum([row.b for row in rows[k]], axis=0)
             Hpp = H[:n, :n] + np.diag(held)
             Hps = H[:n, n:]
-            back: Floats = np.asarray(np.linalg.solve(Hpp, Hps), dtype=np.float64)
-            own: Floats = np.asarray(np.linalg.solve(Hpp, b[:n]), dtype=np.float64)
+            back: Floats = np.linalg.solve(Hpp, Hps)
+            own: Floats = np.linalg.solve(Hpp, b[:n])
             self.H += H[n:, n:] - Hps.T @ back
             self.b += b[n:] - Hps.T @ own
             self.follows[k] = back, own
@@ -183,11 +183,10 @@ class _Evidence:
     def step(self, factors: Floats) -> Floats:
         """The Gauss-Newton step of evidence and prior."""
         prior = self._prior
-        step: Floats = np.asarray(
+        return np.asarray(
             np.linalg.solve(self.H + np.diag(prior), self.b - prior * (factors - 1.0)),
             dtype=np.float64,
         )
-        return step
 
 
 def _follow_shape(

@@ -156,8 +156,7 @@ def _velocity(scene: ReprojectionProblem, obs: Observations, arm_m: Floats) -> F
     speed = path[:, 0] + 2.0 * delay * path[:, 1]
     way = delay * path[:, 0] + delay**2 * path[:, 1]
     turning = np.einsum("nij,nj->ni", left_jacobians(way[:, :3]), speed[:, :3])
-    velocity: Floats = np.cross(turning, arm_m) + speed[:, 3:]
-    return velocity
+    return np.cross(turning, arm_m) + speed[:, 3:]
 
 
 def corner_speeds_px(scene: ReprojectionProblem, obs: Observations) -> Floats:

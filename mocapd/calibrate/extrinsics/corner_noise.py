@@ -60,8 +60,7 @@ def motion_deviations_px(
     """(N,): of corners extrapolated along the board's motion from the position's instant to the picture's, at positions
     (V,) with neighbours on one side."""
     way_frames = np.abs(scene.delay[obs.camera] + obs.lag)
-    out: Floats = _ONE_SIDED * corner_speeds_px(scene, obs) * way_frames * one_sided[obs.view]
-    return out
+    return _ONE_SIDED * corner_speeds_px(scene, obs) * way_frames * one_sided[obs.view]
 
 
 def in_wrong_views(
@@ -83,5 +82,4 @@ def in_wrong_views(
 def _log_likelihood(error_px: Floats, deviation_px: Floats) -> Floats:
     """Of distances in the plane, of Student's t distribution."""
     square = np.square(error_px / deviation_px)
-    out: Floats = -2.0 * np.log(deviation_px) - 0.5 * (_TAIL + 2.0) * np.log1p(square / _TAIL)
-    return out
+    return -2.0 * np.log(deviation_px) - 0.5 * (_TAIL + 2.0) * np.log1p(square / _TAIL)

@@ -32,5 +32,4 @@ def lower_triangle(normal: Floats) -> Floats:
         if info == 0:
             lower: Floats = L
             return lower
-    scales: Floats = np.diag(np.sqrt(diagonal))
-    return scales
+    return np.diag(np.sqrt(diagonal))

@@ -122,5 +122,4 @@ def shift_px(rows: BodyRows, camera: Camera, image_scale: int) -> Floats:
     way_m = np.linalg.solve(rows.H[:3, :3] + 1e-3 * np.eye(3), rows.b[:3])
     depth_m = float(camera.R[2] @ rows.at_m + camera.t_m[2])
     focal_px = np.array([camera.K[0, 0], camera.K[1, 1]]) / image_scale
-    out: Floats = focal_px * (camera.R @ way_m)[:2] / max(depth_m, 0.2)
-    return out
+    return focal_px * (camera.R @ way_m)[:2] / max(depth_m, 0.2)

@@ -73,5 +73,4 @@ def _bodies(rig: Rig, observations: Sequence[PatchObservation]) -> Floats:
 
 
 def _unit(v: Floats) -> Floats:
-    out: Floats = v / np.linalg.norm(v)
-    return out
+    return v / np.linalg.norm(v)

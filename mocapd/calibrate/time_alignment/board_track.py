@@ -67,14 +67,12 @@ class BoardTrack:
         points[~(interpolated | near_start | near_end)] = np.nan
         points[near_start] = self.points_m[after - 1][near_start]
         points[near_end] = self.points_m[after][near_end]
-        out: Floats = points
-        return out
+        return points
 
     def pixels(self, points_m: Floats) -> Floats:
         """(...,2) [px] from the axis of points (...,3) in this camera's frame, as without distortion."""
         depth_m = np.maximum(points_m[..., 2:], 1e-3)
-        out: Floats = self.focal_px * points_m[..., :2] / depth_m
-        return out
+        return self.focal_px * points_m[..., :2] / depth_m
 
 
 def board_track(

@@ -81,8 +81,7 @@ class _Trials:
         # mean of four corners and two cameras; einsum is much faster than sums along short axes
         square = np.einsum("tkci,tkci->tk", in_a, in_a) + np.einsum("tkci,tkci->tk", in_b, in_b)
         square *= 1.0 / 8.0
-        out: Floats = np.where(self.has_partner, np.sqrt(square), np.nan)
-        return out
+        return np.where(self.has_partner, np.sqrt(square), np.nan)
 
     def costs(self, a_from_b: Affine, scale_px: float) -> Floats:
         """(T,K) in squared deviations."""
