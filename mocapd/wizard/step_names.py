@@ -32,12 +32,9 @@ _IS_DONE: Mapping[StepName, Callable[[Draft, bool], bool]] = {
 """Whether the result of a step is in the draft; the flag says whether the draft was saved since the start."""
 
 
-_OF_SHIRT = frozenset({StepName.COLOUR})
-
-
 def steps_wanted(names: Sequence[StepName], draft: Draft) -> tuple[StepName, ...]:
     """The steps that this setup needs: without a shirt none that concern it."""
-    return tuple(name for name in names if draft.has_shirt or name not in _OF_SHIRT)
+    return tuple(name for name in names if draft.has_shirt or name is not StepName.COLOUR)
 
 
 def after_shirt(shown: StepName, names: Sequence[StepName], draft: Draft) -> StepName | None:

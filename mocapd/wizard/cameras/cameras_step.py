@@ -31,7 +31,7 @@ from mocapd.wizard.cameras.picture_watch import PictureWatch
 from mocapd.wizard.commands import Command, OfCamera
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import DraftCamera, with_cameras
-from mocapd.wizard.step import Json, StepState, StepView, Tell
+from mocapd.wizard.step import Json, StepState, StepView
 from mocapd.wizard.step_names import StepName
 
 _LIST_EVERY_NS = 4 * NS_PER_S
@@ -89,7 +89,7 @@ class CamerasStep:
         due = self._listed_ns is None or now_ns - self._listed_ns > _LIST_EVERY_NS
         if due and self._context.job is None:
             self._listed_ns = now_ns
-            self._context.start_job(self._list, self._take_nodes)
+            self._context.start_job(lambda _report: self._list_nodes(), self._take_nodes)
         if now_ns - self._lit_ns > _LIGHT_EVERY_NS:
             self._lit_ns = now_ns
             self._look_at_light()
@@ -206,9 +206,6 @@ class CamerasStep:
         self._cameras[name] = replace(camera, size_px=size_px, fps_hz=fps_hz)
         self._locking[name] = self._new_locking(self._cameras[name])
 
-    def _list(self, _report: Tell) -> tuple[CameraInfo, ...]:
-        return self._list_nodes()
-
     def _take_nodes(self, nodes: tuple[CameraInfo, ...]) -> None:
         self._nodes, self._list_trouble = nodes, ()
 
@@ -270,11 +267,8 @@ class CamerasStep:
 
     def _row(self, camera: DraftCamera) -> Json:
         name = camera.id
-        status, locking, offer = (
-            self._statuses.get(name),
-            self._locking[name],
-            self._offers.get(name),
-        )
+        status, locking = self._statuses.get(name), self._locking[name]
+        offer = self._offers.get(name)
         held = {key: value for key, value in asdict(locking.controls).items() if value is not None}
         return {
             "id": name,

@@ -14,7 +14,7 @@ from mocapd.errors import InputError, MocapdError, Problem, UnavailableError
 from mocapd.wizard.cameras.cameras_verbs import PORTS, SamePort
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context, StepAround
-from mocapd.wizard.draft import Draft, DraftCamera
+from mocapd.wizard.draft import Draft, DraftCamera, without_room
 from mocapd.wizard.step import StepState, StepView, T
 from mocapd.wizard.wizard import MakeStep
 
@@ -58,15 +58,12 @@ def same_camera(draft: Draft, moved: PortChange) -> Draft:
 
 def other_camera(draft: Draft, moved: PortChange) -> Draft:
     """The draft without the data of the previous camera, and of its room."""
-    draft = same_camera(draft, moved)
+    draft = without_room(same_camera(draft, moved))
     return replace(
         draft,
         intrinsics=_without(draft.intrinsics, moved.camera),
         intrinsics_saved=draft.intrinsics_saved - {moved.camera},
         colours=_without(draft.colours, moved.camera),
-        rig=None,
-        extrinsics_quality=None,
-        floor_known=False,
     )
 
 

@@ -15,12 +15,7 @@ from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import LabelledPicture
 from mocapd.wizard.colour.canvas import SERVICE, Canvas, canvas_of, outlines, problems_of
-from mocapd.wizard.colour.colour_solving import (
-    CameraSolution,
-    Solution,
-    StrokeDrawing,
-    solve_colours,
-)
+from mocapd.wizard.colour.colour_solving import Solution, solve_colours
 from mocapd.wizard.colour.colour_verbs import COLOUR, Freeze, Personal, Propose, Strokes
 from mocapd.wizard.colour.still_pictures import Countdown, StillPictures
 from mocapd.wizard.colour.stroke_images import decode_strokes
@@ -163,12 +158,16 @@ class ColourStep:
         drawn = {name: canvas.drawn for name, canvas in self._canvases.items()}
         personal, before, take = self._personal, self._solution.cameras, self._take
 
+        def job(report: Tell) -> Solution:
+            report("reading the light from the strokes", 0.5)
+            return solve_colours(drawn, personal, before)
+
         def done(solution: Solution) -> None:
             if take == self._take:
                 self._solution, self._solutions = solution, self._solutions + 1
                 self._keep()
 
-        self._context.start_job(lambda report: _solve(drawn, personal, before, report), done)
+        self._context.start_job(job, done)
 
     def _keep(self) -> None:
         """Copy good solutions to the draft."""
@@ -245,12 +244,12 @@ class ColourStep:
 
     def _solution_status(self) -> tuple[StepState, str, float]:
         solved = self._solution.cameras
-        bad = [name for name, solution in solved.items() if solution.W is None]
-        empty = [name for name in self._canvases if name not in solved]
+        bad = " and ".join(name for name, solution in solved.items() if solution.W is None)
+        empty = " and ".join(name for name in self._canvases if name not in solved)
         if bad:
             return (
                 StepState.FAILED,
-                f"The strokes of {_join_names(bad)} cannot be right yet: mend them with the brush.",
+                f"The strokes of {bad} cannot be right yet: mend them with the brush.",
                 0.5,
             )
         if not solved:
@@ -262,7 +261,7 @@ class ColourStep:
         if empty:
             return (
                 StepState.DONE,
-                f"The colours are known, but not for {_join_names(empty)}: draw there too, or go on.",
+                f"The colours are known, but not for {empty}: draw there too, or go on.",
                 1.0,
             )
         return (
@@ -270,17 +269,3 @@ class ColourStep:
             "The colours are known. Look at them as the tracker sees them, mend strokes, or go on.",
             1.0,
         )
-
-
-def _solve(
-    drawn: Mapping[str, StrokeDrawing],
-    personal: bool,
-    before: Mapping[str, CameraSolution],
-    report: Tell,
-) -> Solution:
-    report("reading the light from the strokes", 0.5)
-    return solve_colours(drawn, personal, before)
-
-
-def _join_names(names: list[str]) -> str:
-    return " and ".join(names)

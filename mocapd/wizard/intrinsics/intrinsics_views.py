@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from mocapd.calibrate.board.board_detection import BoardView
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics, solve_intrinsics
 from mocapd.calibrate.intrinsics.view_picking import Lack, PickedViews
@@ -119,7 +121,8 @@ class CameraIntrinsics:
         width, height = self.camera.size_px
         across, down = width / GRID[0], height / GRID[1]
         shapes = []
-        for (row, column), count in _coverage_counts(self.picked):
+        for row, column in np.argwhere(self.picked.counts).tolist():
+            count = int(self.picked.counts[row, column])
             x, y = column * across - 0.5, row * down - 0.5
             at = ((x, y), (x + across, y), (x + across, y + down), (x, y + down))
             level = 1 + (count > 2) + (count > 5)
@@ -137,16 +140,6 @@ class CameraIntrinsics:
             "taken": self.taken is not None,
             "offered": None if self.offered is None else {"when": self.offered.when},
         }
-
-
-def _coverage_counts(picked: PickedViews) -> list[tuple[tuple[int, int], int]]:
-    rows, columns = picked.counts.shape
-    return [
-        ((row, column), int(picked.counts[row, column]))
-        for row in range(rows)
-        for column in range(columns)
-        if picked.counts[row, column]
-    ]
 
 
 def _figures(intrinsics: Intrinsics) -> dict[str, Json]:

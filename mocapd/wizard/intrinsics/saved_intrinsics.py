@@ -1,7 +1,6 @@
 """Intrinsics of earlier setups by the camera's model, serial and mode: `lenses.toml` in the state directory."""
 
 import logging
-from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated
@@ -137,7 +136,7 @@ def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
     try:
         before = _readable(path)
         rest = [record for record in before if (record.camera, record.size_px) not in made]
-        data = {"schema": SCHEMA, "lens": [_table(record) for record in (*rest, *new)]}
+        data = msgspec.to_builtins(_File(SCHEMA, (*rest, *new)), builtin_types=(datetime,))
         state_dir.mkdir(parents=True, exist_ok=True)
         with whole_file(path) as partial:
             partial.write_text(_HEADER + toml_text(data), encoding="utf-8")
@@ -177,8 +176,3 @@ def _record_of(
         K=K,
         dist=dist,
     )
-
-
-def _table(one: SavedIntrinsics) -> Mapping[str, object]:
-    table: dict[str, object] = msgspec.to_builtins(one, builtin_types=(datetime,))
-    return table
