@@ -29,7 +29,8 @@ def light_hypotheses(pixels: Bytes) -> tuple[Floats, ...]:
     Grey world: the mean of a room is grey [Buchsbaum 1980]; shades of grey: so is its Minkowski mean
     of order 6 [Finlayson & Trezzi 2004].
     """
-    gains = [_undone(black_body_rgb(mired, tint)) for tint in TINTS_UV for mired in MIREDS]
+    lights = [black_body_rgb(mired, tint) for tint in TINTS_UV for mired in MIREDS]
+    gains = [_unit_gain(rgb ** (-1.0 / _GAMMA)) for rgb in lights]
     flat = pixels.reshape(-1, 3)[:, ::-1] / 255.0
     gains.append(_unit_gain(1.0 / np.maximum(flat.mean(axis=0), 1e-3)))
     shades = np.mean(flat**_MINKOWSKI, axis=0) ** (1.0 / _MINKOWSKI)
@@ -72,10 +73,6 @@ def _linear_srgb(uv: Floats) -> Floats:
     x, y = 3.0 * u / (2.0 * u - 8.0 * v + 4.0), 2.0 * v / (2.0 * u - 8.0 * v + 4.0)
     rgb: Floats = _XYZ_TO_SRGB @ np.array([x / y, 1.0, (1.0 - x - y) / y])
     return rgb
-
-
-def _undone(rgb: Floats) -> Floats:
-    return _unit_gain(rgb ** (-1.0 / _GAMMA))
 
 
 def _unit_gain(gain: Floats) -> Floats:

@@ -16,7 +16,6 @@ from mocapd.calibrate.colours.light_hypotheses import light_hypotheses
 from mocapd.calibrate.colours.light_refinement import IDLE_TURNS, LightRefinement, Reading
 from mocapd.errors import InputError
 from mocapd.fit.fit_result import Fit
-from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.view import View
 from mocapd.geometry.rotations import IDENTITY_XYZW
@@ -51,10 +50,6 @@ MapCameras = Callable[
 ]
 
 
-def _quiet(_: float) -> None:
-    """No progress report."""
-
-
 class LightReader:
     """Reads frozen pictures of the cameras of one session; has buffers, but no state between calls."""
 
@@ -63,20 +58,16 @@ class LightReader:
         cameras: Sequence[Camera],
         model: ColourModel,
         database: PoseDatabase,
-        stature_m: float = MEAN_STATURE_M,
+        stature_m: float,
     ) -> None:
         self._params = ShirtParams()
         self._cameras, self._database = tuple(cameras), database
         self._refinement = LightRefinement(self._cameras, model, stature_m, self._params)
         self._segmenters = self._refinement.segmenters
+        self.drawings = self._refinement.fitter.drawings
+        """By camera the renderer of a reading's body."""
 
-    def drawing(self, index: int) -> IdMapRenderer:
-        """The renderer of a reading's body in camera `index`."""
-        return self._refinement.drawing(index)
-
-    def read(
-        self, index: int, pixels: Bytes, progress: Callable[[float], None] = _quiet
-    ) -> Reading:
+    def read(self, index: int, pixels: Bytes, progress: Callable[[float], None]) -> Reading:
         """Camera `index`'s picture (H,W,3) BGR in the light with the best agreement. Raises InputError.
 
         Several threads may read different cameras at once. progress: of this camera, 0..1.
@@ -113,8 +104,8 @@ class LightReader:
     def read_together(
         self,
         pictures: Mapping[int, Bytes],
-        progress: Callable[[float], None] = _quiet,
-        map_cameras: MapCameras = map,
+        progress: Callable[[float], None],
+        map_cameras: MapCameras,
     ) -> dict[int, Reading]:
         """Simultaneous pictures by camera index, of cameras with known extrinsics. Raises InputError
         when no camera shows a shirt; the result lacks cameras without one.

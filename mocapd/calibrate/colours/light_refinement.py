@@ -11,7 +11,6 @@ import numpy as np
 
 from mocapd.body.model import build_model
 from mocapd.fit.fit_result import Fit, confirmed_parts
-from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.limbs.arm_search import ArmSearch
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
@@ -70,10 +69,6 @@ class LightRefinement:
         self._arms = ArmSearch(self.fitter, params.limbs)
         self._precision = shade_precision(model)
 
-    def drawing(self, index: int) -> IdMapRenderer:
-        """The renderer of a reading's body in camera `index`."""
-        return self.fitter.drawings[index]
-
     def follow(self, index: int, fit: Fit, start: ShirtAppearance, turns: range) -> Reading | None:
         """Alternates pose and light; returns the best result, None when the body leaves the picture."""
         self.segmenters[index].memory.appearance = start
@@ -100,7 +95,7 @@ class LightRefinement:
 
     def classify(self, index: int, fit: Fit) -> View | None:
         """The picture's colours, given the last pose; None when the body left the picture."""
-        drawing = self.drawing(index)
+        drawing = self.fitter.drawings[index]
         if to_camera(drawing.camera, fit.state.root_m)[2] < _NEAREST_M:
             return None
         roi = drawing.region(fit.state, 0.0, self._params.segmentation.uncertain_margin_px)
@@ -117,7 +112,7 @@ class LightRefinement:
     def update_light(self, index: int, state: MotionState, view: View) -> None:
         """Set the white balance that the fitted body's patches give."""
         segmenter = self.segmenters[index]
-        rendered = self.drawing(index).render(state, 0.0, view.roi)
+        rendered = self.fitter.drawings[index].render(state, 0.0, view.roi)
         sums = np.zeros((10, 4))
         colour_statistics(
             segmenter.picture, view.roi[0], view.roi[1], rendered, view.ids, True, sums
@@ -131,7 +126,8 @@ class LightRefinement:
     def judged_alone(self, reading: Reading) -> Reading:
         """The reading with the agreement of its own camera alone."""
         view = reading.view
-        rendered = self.drawing(view.index).render(reading.fit.state, view.dt_s, view.roi)
+        drawing = self.fitter.drawings[view.index]
+        rendered = drawing.render(reading.fit.state, view.dt_s, view.roi)
         n = np.bincount(rendered.ravel(), minlength=COLOURS + 1)[1:]
         same = np.bincount(rendered[rendered == view.ids], minlength=COLOURS + 1)[1:]
         return replace(

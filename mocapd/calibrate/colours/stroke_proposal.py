@@ -99,7 +99,7 @@ def of_one_dye(strokes: Bytes, pixels: Bytes) -> Bytes:
 def _proposal(
     reader: LightReader, index: int, pixels: Bytes, reading: Reading, model: ColourModel
 ) -> Proposal:
-    drawing, view = reader.drawing(index), reading.view
+    drawing, view = reader.drawings[index], reading.view
     rendered = drawing.render(reading.fit.state, view.dt_s, view.roi)
     at = (view.roi[0] * drawing.image_scale, view.roi[1] * drawing.image_scale)
     inside = _upscale(interiors(rendered, view.ids), drawing.image_scale, at, pixels)
