@@ -152,9 +152,8 @@ def with_board(
 ) -> SceneExtrinsics:
     """The same with one more position of the board; the cameras stay."""
     board_m, scene = corners_m(extrinsics.spec), extrinsics.bundle.scene
-    obs = observations(
-        extrinsics.names, {n: _only(views, n, index) for n in extrinsics.names}, [index], board_m
-    )
+    placed = {n: {index: views[n]} if n in views else {} for n in extrinsics.names}
+    obs = observations(extrinsics.names, placed, [index], board_m)
     best, best_px = None, np.inf
     for name, view in views.items():
         i = extrinsics.names.index(name)
@@ -180,10 +179,6 @@ def with_board(
     used = np.concatenate([extrinsics.bundle.used, np.ones(len(obs.camera), bool)])
     bundle = replace(extrinsics.bundle, scene=scene, used=used)
     return replace(extrinsics, indices=(*extrinsics.indices, index), obs=merged, bundle=bundle)
-
-
-def _only(views: Mapping[str, BoardView], name: str, index: int) -> dict[int, BoardView]:
-    return {index: views[name]} if name in views else {}
 
 
 def _with(scene: ReprojectionProblem, scene_from_board: RigidTransform) -> ReprojectionProblem:

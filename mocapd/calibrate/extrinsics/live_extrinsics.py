@@ -48,7 +48,7 @@ def solve_live(
     refusal: ContradictionError | None = None
     try:
         solution = _solve(intrinsics_of, spec, views)
-        if not earlier or _rejected_share(solution[0]) <= _MOST_REFUSED:
+        if not earlier or 1.0 - np.mean(solution[0].bundle.used) <= _MOST_REFUSED:
             return solution
     except ContradictionError as error:
         if not earlier:
@@ -113,10 +113,6 @@ def _measured_intrinsics(
         deviation[i, 2:4] = _MIDDLE * intrinsics.size_px[0]
         deviation[i, 4:] = _DIST
     return MeasuredIntrinsics(rows, deviation)
-
-
-def _rejected_share(extrinsics: SceneExtrinsics) -> float:
-    return 1.0 - float(np.mean(extrinsics.bundle.used))
 
 
 def _apart(views: Views, earlier: frozenset[int]) -> dict[str, dict[int, BoardView]]:

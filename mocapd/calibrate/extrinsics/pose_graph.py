@@ -48,19 +48,24 @@ def initial_scene(
         [intrinsics_row(intrinsics_of[name].K, intrinsics_of[name].dist) for name in names]
     )
     camera_from_scene = stack([relative[name] for name in names])
+
+    def scene_of(boards: Sequence[RigidTransform]) -> ReprojectionProblem:
+        still = np.zeros(len(names)), np.zeros((len(boards), 2, POSE))
+        return ReprojectionProblem(intrinsics, camera_from_scene, stack(boards), *still, back)
+
+    def misfit_px(scene_from_board: RigidTransform, obs: Observations) -> float:
+        """Median distance [px] of the corners of one position in all cameras."""
+        off_px = residuals_px(scene_of([scene_from_board]), obs)
+        return float(np.median(np.linalg.norm(off_px, axis=1)))
+
     indices = sorted({index for name in names for index in poses[name]})
     boards = []
     for index in indices:
         observing = [name for name in names if index in poses[name]]
         guesses = [relative[name].inverse() @ poses[name][index] for name in observing]
         corners = observations(names, views, [index], board_m)
-        errors = [
-            _misfit_px(intrinsics, camera_from_scene, guess, corners, back) for guess in guesses
-        ]
-        boards.append(guesses[int(np.argmin(errors))])
-    still = np.zeros(len(names)), np.zeros((len(indices), 2, POSE))
-    scene = ReprojectionProblem(intrinsics, camera_from_scene, stack(boards), *still, back)
-    return scene, indices
+        boards.append(min(guesses, key=lambda guess: misfit_px(guess, corners)))
+    return scene_of(boards), indices
 
 
 def observations(
@@ -152,17 +157,3 @@ def _relative(a: Mapping[int, RigidTransform], b: Mapping[int, RigidTransform]) 
     """
     said = [a[index] @ b[index].inverse() for index in sorted(a.keys() & b.keys())]
     return said[int(np.argmin(np.median(distances(stack(said)), axis=1)))]
-
-
-def _misfit_px(
-    intrinsics: Floats,
-    camera_from_scene: RigidTransform,
-    scene_from_board: RigidTransform,
-    obs: Observations,
-    back: BackPrint,
-) -> float:
-    """Median distance [px] of the corners of one position in all cameras."""
-    still = np.zeros(len(intrinsics)), np.zeros((1, 2, POSE))
-    boards = stack([scene_from_board])
-    scene = ReprojectionProblem(intrinsics, camera_from_scene, boards, *still, back)
-    return float(np.median(np.linalg.norm(residuals_px(scene, obs), axis=1)))

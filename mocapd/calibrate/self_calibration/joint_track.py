@@ -17,7 +17,6 @@ from mocapd.fit.fit_params import FitParams
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState, predict_state, step_between
 from mocapd.fit.solver import Fitter
-from mocapd.fit.view import View
 from mocapd.fit.work_size import image_scales
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
@@ -51,7 +50,8 @@ class _Follower:
             starts = [replace(s, velocity=last.velocity) for s in starts]
         fits = [self._fitter.fit(s, views, _LOOSE_S, _ITERATIONS) for s in starts]
         if last is not None:
-            fits.append(self._predict(last, views, dt_s))
+            ahead = predict_state(self._model, last, dt_s, _DAMPING)
+            fits.append(self._fitter.fit(ahead, views, dt_s, _ITERATIONS))
         best = min(fits, key=lambda fit: fit.cost)
         self._last = None
         if best.match < _LEAST_MATCH:
@@ -75,10 +75,6 @@ class _Follower:
         joints, quats = self._fitter.joints(predict_state(self._model, fit.state, dt_s))
         turned = rotations.multiply(rotations.from_matrix(camera.R), quats)
         return replace(own, joints_m=to_camera(camera, joints), quats_xyzw=turned)
-
-    def _predict(self, last: MotionState, views: Sequence[View], dt_s: float) -> Fit:
-        state = predict_state(self._model, last, dt_s, _DAMPING)
-        return self._fitter.fit(state, views, dt_s, _ITERATIONS)
 
 
 def followed_together(

@@ -40,8 +40,8 @@ class AlignedTimes:
         later_s = later_s or {}
         out = []
         for name, clock in self.maps.items():
-            if not _is_mended(clock):
-                continue
+            if not len(clock.jump_s) and not clock.offset_s.any():
+                continue  # not mended
             more_s = later_s.get(name, 0.0) - later_s.get(self.reference, 0.0)
             clock = ClockMap(clock.jump_s, clock.offset_s - more_s)
             out.append(f"{name} {clock_text(clock, self.period_s[name], self.reference)}")
@@ -108,10 +108,6 @@ def clock_text(clock: ClockMap, period_s: float, other: str) -> str:
         what = "loses" if change_s < 0.0 else "repeats or gains"
         parts.append(f"{what} {frames} frame{'s' if frames != 1 else ''} near {at_s:.1f} s")
     return ", ".join(parts)
-
-
-def _is_mended(clock: ClockMap) -> bool:
-    return len(clock.jump_s) > 0 or bool(clock.offset_s.any())
 
 
 def _merge(chain: Sequence[ClockMap]) -> ClockMap:
