@@ -166,12 +166,12 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras(
 ) -> None:
     """A body that is centimetres off everywhere, as none of the shape's factors makes it."""
     remember_solutions(monkeypatch)
-    free = free_body(MODEL, 0.02)
+    free, sd = free_body(MODEL, 0.02)
     rng = np.random.default_rng(3)
-    factors = np.ones(len(free.sd))
-    factors[MODEL.n_shape :] += rng.normal(0.0, 0.012, len(free.sd) - MODEL.n_shape)
+    factors = np.ones(len(sd))
+    factors[MODEL.n_shape :] += rng.normal(0.0, 0.012, len(sd) - MODEL.n_shape)
     seen = observations(
-        20, Fitter(free.model, shirt_labels(MODEL), CAMERAS, [2, 2], FitParams()), factors
+        20, Fitter(free, shirt_labels(MODEL), CAMERAS, [2, 2], FitParams()), factors
     )
     short = SelfCalibrationParams(
         rounds=8, averaged=4, surface_uncertainty=1e-3
@@ -190,8 +190,8 @@ def test_a_body_of_another_surface_does_not_turn_the_cameras(
 
 def test_the_surface_is_off_alike_on_both_sides() -> None:
     """What moves a point of the left side moves one of the right side by the mirrored way."""
-    free = free_body(MODEL, 0.02)
-    ways = free.model.d_vertices[MODEL.n_shape :]
+    free, _ = free_body(MODEL, 0.02)
+    ways = free.d_vertices[MODEL.n_shape :]
     mirror = np.array([-1.0, 1.0, 1.0])
     at = MODEL.vertices_m
     apart_m = np.linalg.norm(at[:, None] * mirror - at[None], axis=2)

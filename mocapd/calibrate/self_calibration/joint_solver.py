@@ -18,7 +18,7 @@ from mocapd.calibrate.self_calibration.body_rows import (
 )
 from mocapd.calibrate.self_calibration.camera_uncertainty import CameraUncertainty
 from mocapd.calibrate.self_calibration.keyframes import Keyframe, initial_states, keyframe_views
-from mocapd.calibrate.self_calibration.surface_residuals import FreeBody, free_body
+from mocapd.calibrate.self_calibration.surface_residuals import free_body
 from mocapd.errors import ConfigError
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, apply_step
@@ -90,9 +90,9 @@ class JointSolver:
         params: SelfCalibrationParams,
     ) -> None:
         self._p, self._tracker = params, FitParams()
-        self._body: FreeBody = free_body(model, params.off_sd_m)
+        self._body, self._factor_sd = free_body(model, params.off_sd_m)
         self._work = image_scales(cameras, self._tracker.work_width_px)
-        self._n_shape = len(self._body.sd)
+        self._n_shape = len(self._factor_sd)
         self._n = self._n_shape + N_CAMERA * (len(cameras) - 1)
         self._views: list[list[View]] = []
         # the unknowns: cameras, the factors (N,) of a free body, and a state per keyframe
@@ -148,8 +148,8 @@ class JointSolver:
 
     def _gather(self) -> list[list[BodyRows]]:
         """The rows of every keyframe's views."""
-        body = self._body.model
-        fitter = Fitter(body, shirt_labels(body), self._cameras, self._work, self._tracker)
+        labels = shirt_labels(self._body)
+        fitter = Fitter(self._body, labels, self._cameras, self._work, self._tracker)
         gatherer = RowGatherer(fitter, self._p.radius_px)
         return [
             [gatherer.gather(s, view) for view in v]
@@ -159,7 +159,7 @@ class JointSolver:
     def _evidence(self, rows: Sequence[Sequence[BodyRows]]) -> _Evidence:
         """Normal equations of all keyframes. Raises ConfigError when too few agree with the body."""
         p = self._p
-        n = self._body.model.n_pose
+        n = self._body.n_pose
         out = _Evidence(np.zeros((self._n, self._n)), np.zeros(self._n), [])
         tolerable = p.tolerated_cost * float(np.median([cost_of(frame) for frame in rows]))
         for frame, frame_views in zip(rows, self._views, strict=True):
@@ -195,7 +195,7 @@ class JointSolver:
 
     def _with_prior(self, evidence: _Evidence) -> _Evidence:
         """Adds the prior of people's shapes, in place."""
-        n, prior = self._n_shape, 1.0 / self._body.sd**2
+        n, prior = self._n_shape, 1.0 / self._factor_sd**2
         evidence.H[:n, :n] += np.diag(prior)
         evidence.H += 1e-9 * np.eye(self._n)
         evidence.b[:n] -= prior * (self._factors - 1.0)
@@ -221,19 +221,17 @@ class JointSolver:
         for k, (state, follow) in enumerate(zip(self._states, evidence.follows, strict=True)):
             root, local = state.root_m, state.local_xyzw
             if follow is not None:
-                root, local = apply_step(
-                    self._body.model, root, local, follow[1] - follow[0] @ step
-                )
+                root, local = apply_step(self._body, root, local, follow[1] - follow[0] @ step)
             self._states[k] = replace(state, root_m=root, local_xyzw=local, factors=self._factors)
 
     def _pose_information(self) -> Floats:
-        information = np.full(self._body.model.n_pose, 1.0 / self._p.joint_sd_rad**2)
+        information = np.full(self._body.n_pose, 1.0 / self._p.joint_sd_rad**2)
         information[:6] = 1e-3  # root and hips are free
         return information
 
     def _columns(self, row: BodyRows, camera: int) -> Floats:
         """(P, n): maps the row's pose and shape columns to those of shape and cameras."""
-        n_pose = self._body.model.n_pose
+        n_pose = self._body.n_pose
         J = np.zeros((n_pose + self._n_shape, self._n))
         J[n_pose:, : self._n_shape] = np.eye(self._n_shape)
         if camera > 0:
@@ -255,5 +253,5 @@ class JointSolver:
             residual_px={c.name: self._residual_px(good, i) for i, c in enumerate(self._cameras)},
             frames=len(good),
             match=matched / max(visible, 1.0),
-            factors=self._factors[: self._body.model.space.n_shape],
+            factors=self._factors[: self._body.space.n_shape],
         )

@@ -5,7 +5,7 @@ averaging does not remove it, and the camera poses would have to absorb it. So i
 displacements, symmetric between both sides of the body, that move with the bones.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,17 +25,9 @@ _X, _Y, _Z = np.eye(3)
 _SIDES = ("left", "right")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FreeBody:
-    """model: with more shape factors, each of which minus 1 is a displacement [m]; sd (N,): the spread of every factor
-    over people."""
-
-    model: BodyModel
-    sd: Floats
-
-
-def free_body(model: BodyModel, off_sd_m: float) -> FreeBody:
-    """The body of this model, with a deviation of surface and shoulders of `off_sd_m` [m] (standard deviation)."""
+def free_body(model: BodyModel, off_sd_m: float) -> tuple[BodyModel, Floats]:
+    """The model with more shape factors, each of which minus 1 is a displacement [m], and the spread (N,) of every factor
+    over people: `off_sd_m` [m] of surface and shoulders (standard deviation)."""
     surface = [*_torso(model), *_arms(model)]
     joints = [np.zeros_like(model.rest_m) for _ in surface]
     for way in (_Y, _Z):
@@ -44,15 +36,13 @@ def free_body(model: BodyModel, off_sd_m: float) -> FreeBody:
         joints.append(moved)
         surface.append(_of(model, LEFT_ARM, RIGHT_ARM)[:, None] * way)
     d_vertices = np.concatenate([model.d_vertices, surface])
-    return FreeBody(
-        replace(
-            model,
-            d_vertices=d_vertices,
-            d_rest=np.concatenate([model.d_rest, joints]),
-            d_centres=np.ascontiguousarray(d_vertices[:, model.triangles].mean(axis=2)),
-        ),
-        np.concatenate([model.space.factor_sd, np.full(len(surface), off_sd_m)]),
+    free = replace(
+        model,
+        d_vertices=d_vertices,
+        d_rest=np.concatenate([model.d_rest, joints]),
+        d_centres=np.ascontiguousarray(d_vertices[:, model.triangles].mean(axis=2)),
     )
+    return free, np.concatenate([model.space.factor_sd, np.full(len(surface), off_sd_m)])
 
 
 def _torso(model: BodyModel) -> list[Floats]:
