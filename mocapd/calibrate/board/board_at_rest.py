@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mocapd.calibrate.board.board_detection import BoardView
-from mocapd.calibrate.board.board_instant import BoardInstant, BoardObservation
+from mocapd.calibrate.board.board_instant import BoardInstant, BoardObservation, shift_px
 from mocapd.calibrate.extrinsics.board_extrinsics import SceneExtrinsics, with_board
 from mocapd.calibrate.extrinsics.world_frame import camera_centres
 from mocapd.calibration.board_spec import centre_m
@@ -64,12 +64,7 @@ class BoardAtRest:
 
     def _has_moved(self, name: str, observation: BoardObservation) -> bool:
         before = self._observations.get(name)
-        if not before:
-            return False
-        first, view = before[0].view, observation.view
-        _, then, now = np.intersect1d(first.ids, view.ids, return_indices=True)
-        shift = view.corners_px[now] - first.corners_px[then]
-        return not len(now) or float(np.median(np.linalg.norm(shift, axis=1))) > _SAME_PX
+        return before is not None and shift_px(before[0].view, observation.view) > _SAME_PX
 
 
 def _mean(views: list[BoardView], index: int) -> BoardView:

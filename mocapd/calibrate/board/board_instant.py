@@ -36,8 +36,11 @@ def motion_px(before: BoardObservation | None, view: BoardView, t_ns: int) -> fl
     """Of the corners of a view since the one before [px per 1/30 s]; infinite after too long a time."""
     if before is None or not 0 < t_ns - before.t_ns <= _REMEMBERED_NS:
         return float("inf")
-    _, then, now = np.intersect1d(before.view.ids, view.ids, return_indices=True)
-    if not len(now):
-        return float("inf")
-    shift = np.linalg.norm(view.corners_px[now] - before.view.corners_px[then], axis=1)
-    return float(np.median(shift)) * _FRAME_NS / (t_ns - before.t_ns)
+    return shift_px(before.view, view) * _FRAME_NS / (t_ns - before.t_ns)
+
+
+def shift_px(before: BoardView, view: BoardView) -> float:
+    """Median shift of the corners that both views have [px]; infinite without such corners."""
+    _, then, now = np.intersect1d(before.ids, view.ids, return_indices=True)
+    shift = np.linalg.norm(view.corners_px[now] - before.corners_px[then], axis=1)
+    return float(np.median(shift)) if len(now) else float("inf")
