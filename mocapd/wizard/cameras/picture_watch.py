@@ -32,14 +32,12 @@ class Recent:
 
     @property
     def brightness(self) -> float:
-        """Mean luma 0..255; NaN without frames."""
-        return float((self.bgr @ _BGR_TO_LUMA).mean()) if len(self.t_ns) else float("nan")
+        """Mean luma 0..255, of one frame at least."""
+        return float((self.bgr @ _BGR_TO_LUMA).mean())
 
     @property
     def warmth(self) -> float:
-        """Red over blue; NaN without frames."""
-        if not len(self.t_ns):
-            return float("nan")
+        """Red over blue, of one frame at least."""
         blue, _green, red = self.bgr.mean(axis=0)
         return float((red + 1.0) / (blue + 1.0))
 
