@@ -145,14 +145,8 @@ def _jumps(
     A part counts if it agrees better than the whole recording, which one delay cannot explain after a jump; in a quiet part
     noise agrees a little at any delay.
     """
-    begin = max(
-        float(camera.signal.times_s[0]) if len(camera.signal.times_s) else np.inf
-        for camera in cameras
-    )
-    end = min(
-        float(camera.signal.times_s[-1]) if len(camera.signal.times_s) else -np.inf
-        for camera in cameras
-    )
+    begin = max(camera.signal.times_s.min(initial=np.inf) for camera in cameras)
+    end = min(camera.signal.times_s.max(initial=-np.inf) for camera in cameras)
     if end - begin < 1.5 * _PART_S:
         return [None] * len(cameras)
     parts = [

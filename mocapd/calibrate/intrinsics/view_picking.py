@@ -42,17 +42,13 @@ class PickedViews:
         self.views: list[BoardView] = []
         self._board_m = board_m
         self._places = np.zeros((0, 5))
-        self._counts: NDArray[np.int64] = coverage([], size_px)
-
-    @property
-    def counts(self) -> NDArray[np.int64]:
+        self.counts: NDArray[np.int64] = coverage([], size_px)
         """(rows, columns): corners in each cell of the picture."""
-        return self._counts
 
     @property
     def covered_share(self) -> float:
         """The share of the cells, 0..1, with a corner in any picture."""
-        return float(np.mean(self._counts > 0))
+        return float(np.mean(self.counts > 0))
 
     def still(self, motion_px: float) -> bool:
         """Whether the board moves little enough [px per 1/30 s] for a usable picture."""
@@ -66,7 +62,7 @@ class PickedViews:
         if place is None:
             return False
         own = coverage([view], self.size_px)
-        new_cells = int(((own > 0) & (self._counts == 0)).sum())
+        new_cells = int(((own > 0) & (self.counts == 0)).sum())
         if len(self.views):
             far = np.linalg.norm(self._places - place, axis=1)
             nearest = int(np.argmin(far))
@@ -76,7 +72,7 @@ class PickedViews:
             return False
         self.views.append(view)
         self._places = np.vstack([self._places, place])
-        self._counts = self._counts + own
+        self.counts = self.counts + own
         return True
 
     def lack(self) -> Lack:
@@ -103,10 +99,10 @@ class PickedViews:
 
     def emptiest(self) -> tuple[int, int]:
         """Row and column (each 0, 1 or 2) of the ninth of the picture with the fewest corners."""
-        rows, columns = self._counts.shape
+        rows, columns = self.counts.shape
         ninths = np.zeros((3, 3))
         row, column = np.indices((rows, columns))
-        np.add.at(ninths, (row * 3 // rows, column * 3 // columns), self._counts > 0)
+        np.add.at(ninths, (row * 3 // rows, column * 3 // columns), self.counts > 0)
         at = int(np.argmin(ninths))
         return at // 3, at % 3
 

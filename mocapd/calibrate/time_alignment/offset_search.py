@@ -167,14 +167,11 @@ def _fitting(trials: _Trials, rows: Ints) -> list[tuple[float, Affine]]:
 def _best_path(trials: _Trials, a_from_b: Affine, scale_px: float) -> _Path:
     """The cheapest path, with jumps by whole periods."""
     costs = trials.costs(a_from_b, scale_px)
-    best: tuple[float, Ints] | None = None
+    paths = []
     for phase in range(trials.phases):
-        columns = np.arange(phase, costs.shape[1], trials.phases)
-        total, states = _cheapest(costs[:, columns])
-        if best is None or total < best[0]:
-            best = total, columns[states]
-    assert best is not None
-    return _Path(best[0], best[1], a_from_b, scale_px)
+        total, states = _cheapest(costs[:, phase :: trials.phases])
+        paths.append(_Path(total, phase + trials.phases * states, a_from_b, scale_px))
+    return min(paths, key=lambda path: path.cost)
 
 
 def _cheapest(costs: Floats) -> tuple[float, Ints]:
