@@ -9,7 +9,6 @@ from mocapd.calibration.calibration_file import calibration_path, read_calibrati
 from mocapd.capture.webcam.identity import WebcamIdentity, parse_identity
 from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.errors import InputError, UnavailableError
-from mocapd.wizard.cameras.cameras_verbs import CAMERAS, Lock
 from mocapd.wizard.cameras.initial_cameras import plugged_cameras, where_now
 from mocapd.wizard.cameras.same_port import AsksForPorts, find_port_changes
 from mocapd.wizard.commands import Command
@@ -17,6 +16,7 @@ from mocapd.wizard.context import Context
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.saving import save_draft
 from mocapd.wizard.step import StepState, StepView
+from mocapd.wizard.step_commands import CAMERAS, Lock
 from mocapd.wizard.step_names import StepName
 from tests.wizard.context import FakeContext, do
 from tests.wizard.drafts import full_draft, source_of

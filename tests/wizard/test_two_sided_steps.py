@@ -17,8 +17,8 @@ from mocapd.types import Bytes
 from mocapd.wizard.board.board_form import board_of, form_of
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
-from mocapd.wizard.intrinsics.intrinsics_verbs import Board
 from mocapd.wizard.step import StepState
+from mocapd.wizard.step_commands import Board
 from tests.calibrate.seen_once import never_written
 from tests.calibrate.two_sided_scene import (
     MIDDLE_M,

@@ -8,8 +8,8 @@ import msgspec
 from mocapd.calibration.board_spec import FEWEST_SQUARES, MOST_SQUARES, BoardSpec, dictionaries
 from mocapd.printing.board_layout import fitted_board
 from mocapd.printing.paper_sizes import RULER_MM
-from mocapd.wizard.intrinsics.intrinsics_verbs import Board
 from mocapd.wizard.step import Json
+from mocapd.wizard.step_commands import Board
 
 
 def usual_board() -> BoardSpec:

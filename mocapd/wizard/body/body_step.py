@@ -1,6 +1,6 @@
 """The step Body: the wearer types the stature, and bends the arms while the proportions are measured.
 
-Its commands are `body_verbs.BODY`.
+Its commands are `step_commands.BODY`.
 """
 
 from collections.abc import Mapping
@@ -18,12 +18,12 @@ from mocapd.wizard.body.body_measuring import (
     measure,
     measuring_tracker,
 )
-from mocapd.wizard.body.body_verbs import BODY, MeasureBody, SkipBody, Stature
 from mocapd.wizard.bone_shapes import bone_shapes
 from mocapd.wizard.colour.stroke_images import encode_picture
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.step import Json, Scene, Shape, StepState, StepView
+from mocapd.wizard.step_commands import BODY, MeasureBody, SkipBody, Stature
 from mocapd.wizard.step_names import StepName
 
 # lifetime of the body drawn over the newest picture: arms move 20 cm in that time

@@ -1,6 +1,6 @@
 """The step Cameras: checks each camera, lets it settle, and locks it.
 
-Its commands are `cameras_verbs.CAMERAS`.
+Its commands are `step_commands.CAMERAS`.
 
 `details`: `cameras`: [{id, label, source, size_px, fps_hz, measured_hz, taken, phase, share, lockable,
 controls: {name: value}, problems: [{what, where, fix}], offer: {size_px, fps_hz} or null}], `others`:
@@ -25,13 +25,13 @@ from mocapd.wizard.camera_trouble import too_few_cameras
 from mocapd.wizard.cameras.camera_locking import CameraLocking, LockPhase
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.camera_nodes import node_of, offers, unused_nodes
-from mocapd.wizard.cameras.cameras_verbs import CAMERAS, ChangeMode, LeaveOut, Lock, Name, TakeIn
 from mocapd.wizard.cameras.machine_watch import MachineWatch
 from mocapd.wizard.cameras.picture_watch import PictureWatch
 from mocapd.wizard.commands import Command, OfCamera
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import DraftCamera, with_cameras
 from mocapd.wizard.step import Json, StepState, StepView
+from mocapd.wizard.step_commands import CAMERAS, ChangeMode, LeaveOut, Lock, Name, TakeIn
 from mocapd.wizard.step_names import StepName
 
 _LIST_EVERY_NS = 4 * NS_PER_S

@@ -1,6 +1,6 @@
 """A question in the step Cameras about a webcam in another USB port than when it was calibrated; asked once.
 
-Its command is `cameras_verbs.PORTS`. Details: moved: [{camera, was, now}] not yet answered.
+Its command is `step_commands.PORTS`. Details: moved: [{camera, was, now}] not yet answered.
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,11 +11,11 @@ from mocapd.calibration.calibration_writing import rewrite_sources
 from mocapd.capture.kinds.source_kinds import identities_of
 from mocapd.capture.webcam.identity import WebcamIdentity, match_identity, parse_identity
 from mocapd.errors import InputError, MocapdError, Problem, UnavailableError
-from mocapd.wizard.cameras.cameras_verbs import PORTS, SamePort
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context, StepAround
 from mocapd.wizard.draft import Draft, DraftCamera, without_room
 from mocapd.wizard.step import StepState, StepView, T
+from mocapd.wizard.step_commands import PORTS, SamePort
 from mocapd.wizard.wizard import MakeStep
 
 

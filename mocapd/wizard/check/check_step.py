@@ -1,6 +1,6 @@
 """The step Check: tracks with the draft, judges five seconds of movement, and saves the calibration.
 
-Its commands are `check_verbs.CHECK`.
+Its commands are `step_commands.CHECK`.
 Details: phase (`missing`, `preparing`, `seeking`, `moving`, `judged`), tracking (`live`, `coasting`,
 `lost`, or null), rate_hz, verdicts (see `verdict_json`), saved (the file's path; null before), next_command (see
 CheckSettings), has_shirt.
@@ -28,7 +28,6 @@ from mocapd.types import Tracking
 from mocapd.wizard.camera_delivery import camera_delivery
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.check.check_tracking import CheckTracker, CheckTracking, LoadTracker, prepare
-from mocapd.wizard.check.check_verbs import CHECK, MeasureAgain, Save
 from mocapd.wizard.check.missing_inputs import missing_inputs
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
@@ -36,6 +35,7 @@ from mocapd.wizard.intrinsics.saved_intrinsics import store_intrinsics
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.saving import calibration_of, save_draft
 from mocapd.wizard.step import Scene, StepState, StepView
+from mocapd.wizard.step_commands import CHECK, MeasureAgain, Save
 from mocapd.wizard.step_names import StepName
 
 MOVING_S = 5.0

@@ -1,6 +1,6 @@
 """The step Colour: freezes a picture of each camera, proposes strokes for correction, and solves the light.
 
-Its commands are `colour_verbs.COLOUR`. Uses the wearer's own colours as soon as every colour has strokes: no two
+Its commands are `step_commands.COLOUR`. Uses the wearer's own colours as soon as every colour has strokes: no two
 printers and dyes agree.
 """
 
@@ -16,7 +16,6 @@ from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import LabelledPicture
 from mocapd.wizard.colour.canvas import SERVICE, Canvas, canvas_of, outlines, problems_of
 from mocapd.wizard.colour.colour_solving import Solution, solve_colours
-from mocapd.wizard.colour.colour_verbs import COLOUR, Freeze, Personal, Propose, Strokes
 from mocapd.wizard.colour.still_pictures import Countdown, StillPictures
 from mocapd.wizard.colour.stroke_images import decode_strokes
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database, propose
@@ -24,6 +23,7 @@ from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import DraftColours
 from mocapd.wizard.step import Json, Scene, Shape, StepState, StepView, Tell
+from mocapd.wizard.step_commands import COLOUR, Freeze, Personal, Propose, Strokes
 from mocapd.wizard.step_names import StepName
 
 _COUNTDOWN_S = 3.0

@@ -1,6 +1,6 @@
 """The step Room delegates to the chosen method, the board or the wearer alone.
 
-Its commands are `extrinsics_verbs.ROOM` and the method's own.
+Its commands are `step_commands.ROOM` and the method's own.
 """
 
 from collections.abc import Callable, Mapping
@@ -11,11 +11,11 @@ from mocapd.errors import InputError, Problem
 from mocapd.types import Rig
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context, Step, StepAround
-from mocapd.wizard.extrinsics.extrinsics_verbs import ROOM, Method
 from mocapd.wizard.extrinsics.extrinsics_with_board import ExtrinsicsWithBoard
 from mocapd.wizard.extrinsics.extrinsics_with_wearer import ExtrinsicsWithWearer
 from mocapd.wizard.extrinsics.rig_plan import advice_of, area_shapes
 from mocapd.wizard.step import Shape, StepState, StepView
+from mocapd.wizard.step_commands import ROOM, Method
 
 METHODS: Mapping[str, Callable[[Context], Step]] = MappingProxyType(
     {"board": ExtrinsicsWithBoard, "wearer": ExtrinsicsWithWearer}

@@ -1,6 +1,6 @@
 """The extrinsics with the board: held where cameras see it together, then laid on the floor.
 
-Its commands are `extrinsics_verbs.BOARD_ROOM`.
+Its commands are `step_commands.BOARD_ROOM`.
 """
 
 from collections.abc import Iterator
@@ -35,9 +35,9 @@ from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import ExtrinsicsQuality
 from mocapd.wizard.extrinsics.board_request import board_request
-from mocapd.wizard.extrinsics.extrinsics_verbs import BOARD_ROOM, Floor, SkipFloor, Solve
 from mocapd.wizard.extrinsics.rig_plan import plan_of, quality_of
 from mocapd.wizard.step import Json, Scene, StepState, StepView, Tell
+from mocapd.wizard.step_commands import BOARD_ROOM, Floor, SkipFloor, Solve
 from mocapd.wizard.step_names import StepName
 
 _FACING = (

@@ -1,6 +1,6 @@
 """The extrinsics without a board: the wearer in the shirt walks about for 20 to 30 s.
 
-Its commands are `extrinsics_verbs.WEARER_ROOM`.
+Its commands are `step_commands.WEARER_ROOM`.
 
 It needs intrinsics, colours and stature. An existing rig, of cameras that were bumped since, is the initial value of the
 search.
@@ -19,10 +19,10 @@ from mocapd.wizard.colour.stroke_proposals import LoadDatabase, pose_database
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import ExtrinsicsQuality
-from mocapd.wizard.extrinsics.extrinsics_verbs import WEARER_ROOM, StartWalk, StopWalk
 from mocapd.wizard.extrinsics.rig_plan import plan_of_cameras
 from mocapd.wizard.extrinsics.wearer_walk import SEEN, Walk, WearerExtrinsics, walk_and_solve
 from mocapd.wizard.step import Json, Scene, StepState, StepView
+from mocapd.wizard.step_commands import WEARER_ROOM, StartWalk, StopWalk
 from mocapd.wizard.step_names import StepName
 
 _SHOWN_PLACES = 12  # of the wearer's path, in the plan of the rig

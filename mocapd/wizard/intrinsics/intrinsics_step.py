@@ -1,6 +1,6 @@
 """The step Lens: collects pictures of the board in every camera, and solves its intrinsics when there are enough.
 
-Its commands are `intrinsics_verbs.LENS`.
+Its commands are `step_commands.LENS`.
 """
 
 from collections.abc import Sequence
@@ -29,14 +29,6 @@ from mocapd.wizard.camera_trouble import stopped_cameras
 from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import without_room
-from mocapd.wizard.intrinsics.intrinsics_verbs import (
-    LENS,
-    Board,
-    Finish,
-    MeasureLens,
-    Ruler,
-    UseSaved,
-)
 from mocapd.wizard.intrinsics.intrinsics_views import CameraIntrinsics, IntrinsicsOffer
 from mocapd.wizard.intrinsics.saved_intrinsics import (
     SavedIntrinsics,
@@ -44,6 +36,14 @@ from mocapd.wizard.intrinsics.saved_intrinsics import (
     read_intrinsics,
 )
 from mocapd.wizard.step import Scene, Shape, StepState, StepView, Tell
+from mocapd.wizard.step_commands import (
+    LENS,
+    Board,
+    Finish,
+    MeasureLens,
+    Ruler,
+    UseSaved,
+)
 from mocapd.wizard.step_names import StepName
 
 _SEEN_NS = 500_000_000  # how long a camera counts as the user's target after a sighting
