@@ -1,33 +1,50 @@
-"""Persists a setup in progress beyond its process: writes it after each result, and offers it at the next start."""
+"""Persists a setup in progress beyond its process: writes it after each result, and offers it at the next start.
+
+Its file is a partial `calibration.toml` in a folder of its own. Only its user may read it, as pictures show the wearer; it
+has no passwords of cameras.
+"""
 
 import logging
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from mocapd.boundary.files import MissingError
 from mocapd.boundary.urls import without_password
-from mocapd.calibration.calibration_writing import remove_setup
+from mocapd.calibration.calibration_file import read_setup
+from mocapd.calibration.calibration_writing import remove_setup, write_setup
 from mocapd.capture.webcam.v4l2 import WebcamSettings
-from mocapd.errors import CannotCreateError, InputError, MocapdError, NewerFileError
+from mocapd.errors import (
+    CannotCreateError,
+    InputError,
+    MalformedError,
+    MocapdError,
+    NewerFileError,
+)
 from mocapd.quarantine import Why, quarantine
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft import Draft, DraftCamera, with_cameras
-from mocapd.wizard.draft_file import (
-    FILE_NAME,
-    OF_EARLIER_VERSIONS,
-    UnfinishedSetup,
-    read_draft,
-    write_draft,
-)
+from mocapd.wizard.saving import draft_of, setup_of
 from mocapd.wizard.step_names import StepName
 
+FILE_NAME = "setup/calibration.toml"  # in the state directory
+OF_EARLIER_VERSIONS = "setup-draft.msgpack"
 FORGOTTEN = timedelta(days=7)  # rooms and lights have changed by then
 
 _log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class UnfinishedSetup:
+    """when: time of writing (UTC); done: steps with their result in the draft. The cameras' sources lack
+    passwords."""
+
+    when: datetime
+    done: frozenset[StepName]
+    draft: Draft
 
 
 class SetupKeeper:
@@ -213,3 +230,20 @@ def has_news(draft: Draft, begun: Draft) -> bool:
         )
         or any(colours is not begun.colours.get(name) for name, colours in draft.colours.items())
     )
+
+
+def write_draft(path: Path, unfinished: UnfinishedSetup) -> None:
+    """Write it atomically, readable by its user alone. Raises CannotCreateError."""
+    write_setup(path, *setup_of(unfinished.draft, unfinished.when, unfinished.done))
+
+
+def read_draft(path: Path) -> UnfinishedSetup:
+    """Raises MissingError without a file, InputError, MalformedError or ConfigError for a damaged one, NewerFileError."""
+    saved = read_setup(path)
+    if saved.setup is None:
+        raise MalformedError("is of a setup that was finished")
+    try:
+        done = frozenset(map(StepName, saved.setup.done))
+    except ValueError as error:
+        raise MalformedError(f"names a step that does not exist ({error})") from None
+    return UnfinishedSetup(saved.made.when, done, draft_of(saved, path))

@@ -15,9 +15,8 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.commands import OF_WIZARD, Again, BeginAnew, Go, Next, Resume, Wear, read_command
 from mocapd.wizard.context import Context, Step
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.draft_file import UnfinishedSetup
 from mocapd.wizard.numeric_trouble import EXPECTED, name_trouble
-from mocapd.wizard.setup_keeper import SetupKeeper
+from mocapd.wizard.setup_keeper import SetupKeeper, UnfinishedSetup
 from mocapd.wizard.step import Json, Scene, StepState, T, Tell
 from mocapd.wizard.step_job import StepJob
 from mocapd.wizard.step_names import StepName, after_shirt, steps_done, steps_wanted

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from mocapd.errors import Problem
-from mocapd.wizard.draft_file import UnfinishedSetup
+from mocapd.wizard.setup_keeper import UnfinishedSetup
 from mocapd.wizard.step import Json, StepState, StepView
 from mocapd.wizard.step_names import StepName
 

@@ -18,7 +18,7 @@ from mocapd.sim.scenario import load_scenario
 from mocapd.sim.world import rig_of
 from mocapd.types import Camera
 from mocapd.wizard.draft import ExtrinsicsQuality
-from mocapd.wizard.draft_file import FILE_NAME, read_draft, write_draft
+from mocapd.wizard.setup_keeper import FILE_NAME, read_draft, write_draft
 from mocapd.wizard.step_names import StepName
 from tests.browser.conftest import DRAWN_SLOWLY, Served, problems_of
 from tests.browser.test_setup import SCENARIO, STEP_MS, done, shown

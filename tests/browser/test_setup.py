@@ -25,7 +25,7 @@ from mocapd.sim.film import load_film
 from mocapd.sim.scenario import load_scenario
 from mocapd.types import Bytes
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.draft_file import FILE_NAME, UnfinishedSetup, write_draft
+from mocapd.wizard.setup_keeper import FILE_NAME, UnfinishedSetup, write_draft
 from mocapd.wizard.step_names import StepName
 from tests.browser.conftest import DRAWN_SLOWLY, FOR_THE_DOCS, Served, problems_of
 from tests.conftest import ROOT

@@ -14,9 +14,9 @@ from mocapd.service.room_memory import RoomMemory
 from mocapd.session.offline import RecordedTrack, write_track
 from mocapd.types import Bytes
 from mocapd.web.stored_key import stored_key
-from mocapd.wizard.draft_file import FILE_NAME, UnfinishedSetup, write_draft
 from mocapd.wizard.intrinsics.saved_intrinsics import store_intrinsics
 from mocapd.wizard.saving import save_draft
+from mocapd.wizard.setup_keeper import FILE_NAME, UnfinishedSetup, write_draft
 from mocapd.wizard.step_names import StepName
 from tests.outputs.recorded import frames, record
 from tests.wizard.drafts import full_draft

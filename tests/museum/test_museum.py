@@ -25,12 +25,11 @@ from mocapd.service.room_memory import FILE_NAME as ROOMS
 from mocapd.types import Camera
 from mocapd.web.stored_key import stored_key
 from mocapd.wizard.cameras.camera_locks import CameraLocks
-from mocapd.wizard.draft_file import FILE_NAME as DRAFT
-from mocapd.wizard.draft_file import OF_EARLIER_VERSIONS, read_draft
 from mocapd.wizard.intrinsics.saved_intrinsics import FILE_NAME as LENSES
 from mocapd.wizard.intrinsics.saved_intrinsics import read_intrinsics, store_intrinsics
 from mocapd.wizard.saving import load_draft, save_draft
-from mocapd.wizard.setup_keeper import SetupKeeper
+from mocapd.wizard.setup_keeper import FILE_NAME as DRAFT
+from mocapd.wizard.setup_keeper import OF_EARLIER_VERSIONS, SetupKeeper, read_draft
 from tests.museum.make_exhibit import PASSWORD, URL, WHEN, make_exhibit
 from tests.outputs.test_recording import write_foreign
 from tests.wizard.drafts import full_draft

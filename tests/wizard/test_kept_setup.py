@@ -14,14 +14,15 @@ from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import ConfigError, MocapdError
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft import Draft, DraftCamera
-from mocapd.wizard.draft_file import (
+from mocapd.wizard.setup_keeper import (
     FILE_NAME,
     OF_EARLIER_VERSIONS,
+    SetupKeeper,
     UnfinishedSetup,
     read_draft,
+    unfinished_cameras,
     write_draft,
 )
-from mocapd.wizard.setup_keeper import SetupKeeper, unfinished_cameras
 from mocapd.wizard.step_names import StepName
 from tests.wizard.drafts import begun, drafted, full_draft, same
 from tests.wizard.fake_webcam import FakeWebcam

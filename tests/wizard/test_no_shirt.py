@@ -24,9 +24,9 @@ from mocapd.types import Rig
 from mocapd.wizard.body.body_step import BodyStep
 from mocapd.wizard.check.missing_inputs import missing_inputs
 from mocapd.wizard.draft import Draft
-from mocapd.wizard.draft_file import FILE_NAME, UnfinishedSetup, read_draft, write_draft
 from mocapd.wizard.extrinsics.extrinsics_step import ExtrinsicsStep
 from mocapd.wizard.saving import load_draft, save_draft
+from mocapd.wizard.setup_keeper import FILE_NAME, UnfinishedSetup, read_draft, write_draft
 from mocapd.wizard.step import StepState
 from mocapd.wizard.step_names import StepName, after_shirt
 from mocapd.wizard.wizard import Wizard

@@ -13,8 +13,7 @@ from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.commands import Command, Verbs
 from mocapd.wizard.context import Context
-from mocapd.wizard.draft_file import FILE_NAME, read_draft
-from mocapd.wizard.setup_keeper import SetupKeeper
+from mocapd.wizard.setup_keeper import FILE_NAME, SetupKeeper, read_draft
 from mocapd.wizard.step import StepState, StepView
 from mocapd.wizard.step_names import StepName
 from mocapd.wizard.wizard import MakeStep, Wizard
