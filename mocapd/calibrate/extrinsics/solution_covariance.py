@@ -5,15 +5,10 @@ errors, a board that bends - the errors of many corners have a common cause. The
 Zeger 1986) takes the scatter of whole stretches of the recording instead.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import scipy  # its submodules load on first use: they take long to import
 
 from mocapd.types import Floats, Ints
-
-if TYPE_CHECKING:
-    import scipy.sparse
 
 
 def asked_covariances(

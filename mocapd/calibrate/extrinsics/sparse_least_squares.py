@@ -5,15 +5,11 @@ gives each step.
 """
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy  # its submodules load on first use: they take long to import
 
 from mocapd.types import Floats
-
-if TYPE_CHECKING:
-    import scipy.sparse
 
 _DAMPING = 1e-6  # of the diagonal, at first,
 _LEAST_DAMPING, _MOST_DAMPING = 1e-9, 1e6
