@@ -43,8 +43,7 @@ def test_stamps_that_are_wrong_leave_the_rig_right(late_frames: float) -> None:
         c.name: Intrinsics(c.size_px, c.K, c.dist, np.ones(5, bool), 0, 0, (), (), 0.005)
         for c in RIG
     }
-    sizes_px = [camera.size_px for camera in RIG]
-    found = solve_extrinsics([*lenses], sizes_px, lenses, collected.views, SPEC, PARAMS)
+    found = solve_extrinsics(lenses, collected.views, SPEC, PARAMS)
     made = place_in_world(found, None, "", PARAMS)
     cm, deg = errors(RIG, made.rig.cameras)
     assert made.play_area is not None

@@ -72,8 +72,7 @@ def solved(
 ) -> WorldExtrinsics:
     bundle = BundleParams(gluing=gluing or GluingPrior())
     params = BoardExtrinsicsParams(bundle=bundle, place_cm=place_cm)
-    sizes_px = [camera.size_px for camera in RIG]
-    found = solve_extrinsics(NAMES, sizes_px, true_lenses(RIG), views, spec, params)
+    found = solve_extrinsics(true_lenses(RIG), views, spec, params)
     return place_in_world(found, floor, "the floor", params)
 
 
@@ -242,8 +241,7 @@ def test_a_back_that_little_ties_to_the_front_is_called_so() -> None:
     shared = [(a, b) for a, b in both if a and b and b.back][:3]
     views = {"cam0": {a.index: a for a, _ in shared}, "cam2": {b.index: b for _, b in shared}}
     params = BoardExtrinsicsParams()
-    sizes_px = [camera.size_px for camera in rig]
-    found = solve_extrinsics(list(views), sizes_px, true_lenses(rig), views, SPEC, params)
+    found = solve_extrinsics(true_lenses(rig), views, SPEC, params)
     made = place_in_world(found, None, "", params)
     assert made.gluing is not None
     assert "mm only" in gluing_trouble(made.gluing)

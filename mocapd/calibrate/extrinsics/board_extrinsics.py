@@ -1,6 +1,6 @@
 """Solves the extrinsics from board positions that several cameras see, and rates their fit."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -98,21 +98,20 @@ class WorldExtrinsics:
 
 
 def solve_extrinsics(
-    names: Sequence[str],
-    sizes_px: Sequence[tuple[int, int]],
     intrinsics_of: Mapping[str, Intrinsics],
     views: Mapping[str, Mapping[int, BoardView]],
     spec: BoardSpec,
     params: BoardExtrinsicsParams,
     lags: Mapping[str, Mapping[int, float]] | None = None,
 ) -> SceneExtrinsics:
-    """Solves all cameras and positions at once; `views[camera][index]`, simultaneous for one index, or
-    `lags[camera][index]` [frames] after it.
+    """Solves all cameras of `intrinsics_of`, in its order, and positions at once; `views[camera][index]`, simultaneous for
+    one index, or `lags[camera][index]` [frames] after it.
 
     Raises ConfigError naming cameras without positions in common with the others, MirroredError naming
     mirrored pictures.
     """
-    board_m = corners_m(spec)
+    board_m, names = corners_m(spec), tuple(intrinsics_of)
+    sizes_px = tuple(lens.size_px for lens in intrinsics_of.values())
     trusted = {name: intrinsics_of[name].trusted(views[name]) for name in names}
     if spec.two_sided:
         poses = {name: board_poses(trusted[name], intrinsics_of[name], board_m) for name in names}
@@ -122,7 +121,7 @@ def solve_extrinsics(
     scene, indices = initial_scene(names, intrinsics_of, trusted, board_m, params.bundle.gluing)
     obs = observations(names, trusted, indices, board_m, lags)
     bundle = adjust_bundle(scene, indices, obs, np.array(sizes_px, dtype=float), params.bundle)
-    return SceneExtrinsics(tuple(names), tuple(sizes_px), spec, tuple(indices), obs, bundle)
+    return SceneExtrinsics(names, sizes_px, spec, tuple(indices), obs, bundle)
 
 
 def lone_camera(

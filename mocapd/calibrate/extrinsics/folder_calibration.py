@@ -174,7 +174,6 @@ def _solve_rig(
     progress: Progress,
 ) -> FolderCalibration:
     named = {sighting.recording.name: sighting for sighting in sightings}
-    names = list(named)
     progress("room", 0, 1)
     views = {name: intrinsics_of[name].trusted(own.views) for name, own in named.items()}
     aligned = align_views(
@@ -184,8 +183,6 @@ def _solve_rig(
     floor = None if floor_frame is None else _floor_instant(instants, floor_frame)
     bundle = replace(params.extrinsics.bundle, longest_gap=aligned.longest_gap)
     extrinsics = solve_extrinsics(
-        names,
-        [sighting.recording.size_px for sighting in sightings],
         {name: replace(lens, thrown_out=()) for name, lens in intrinsics_of.items()},
         instants.views,
         spec,
@@ -208,7 +205,7 @@ def _solve_rig(
     reports = {}
     for name, sighting in named.items():
         fit = made.cameras[name]
-        delay_frames = aligned.delay_frames(name, names[0], fit.delay_frames)
+        delay_frames = aligned.delay_frames(name, next(iter(named)), fit.delay_frames)
         reports[name] = _report(sighting, intrinsics_of[name], fit, delay_frames)
     return FolderCalibration(
         made.rig,

@@ -68,18 +68,14 @@ def _solve(
     spec: BoardSpec,
     views: Views,
 ) -> tuple[SceneExtrinsics, WorldExtrinsics]:
-    names = list(intrinsics_of)
-    sizes_px = [intrinsics.size_px for intrinsics in intrinsics_of.values()]
     chosen = {
         name: _choose(name, intrinsics.size_px, views) for name, intrinsics in intrinsics_of.items()
     }
     measured = _measured_intrinsics(
-        list(intrinsics_of.values()), [_alone(name, views) for name in names]
+        list(intrinsics_of.values()), [_alone(name, views) for name in intrinsics_of]
     )
     bundle = replace(PARAMS.bundle, priors=IntrinsicsPriors(measured=measured))
-    extrinsics = solve_extrinsics(
-        names, sizes_px, intrinsics_of, chosen, spec, replace(PARAMS, bundle=bundle)
-    )
+    extrinsics = solve_extrinsics(intrinsics_of, chosen, spec, replace(PARAMS, bundle=bundle))
     return extrinsics, place_in_world(extrinsics, None, "", PARAMS)
 
 
