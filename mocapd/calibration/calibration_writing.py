@@ -24,6 +24,7 @@ from mocapd.calibration.saved_sources import (
     passwords_of,
     store_sources,
     stored_sources,
+    with_sources,
 )
 from mocapd.calibration.toml_text import toml_text
 from mocapd.errors import CannotCreateError, InputError, MocapdError, NewerFileError
@@ -109,11 +110,7 @@ def rewrite_sources(path: Path, sources: Mapping[str, str]) -> None:
     Raises InputError, ConfigError or CannotCreateError; then the file is unchanged.
     """
     saved = read_calibration(path)
-    cameras = tuple(
-        msgspec.structs.replace(camera, source=sources.get(camera.id, camera.source))
-        for camera in saved.camera
-    )
-    saved = msgspec.structs.replace(saved, camera=cameras)
+    saved = with_sources(saved, [sources.get(one.id, one.source) for one in saved.camera])
     addresses = {**stored_sources(path.parent), **passwords_of(saved)}
     try:
         _write(path, _text(saved), addresses)
@@ -141,13 +138,10 @@ def _keep_before(path: Path) -> dict[tuple[str, str], str]:
         return {}
     passwords = dict(passwords_of(saved))
     before = _text(saved).encode() if passwords else path.read_bytes()
-    with whole_file(_previous(path), private=True) as partial:
+    previous = path.with_name(f"{path.stem}.previous{path.suffix}")
+    with whole_file(previous, private=True) as partial:
         partial.write_bytes(before)
     return passwords
-
-
-def _previous(path: Path) -> Path:
-    return path.with_name(f"{path.stem}.previous{path.suffix}")
 
 
 def _cannot_write(error: OSError, path: Path) -> CannotCreateError:

@@ -94,7 +94,7 @@ def store_sources(folder: Path, addresses: MaskedToTrue, calibrations: str) -> N
 
 def masked_sources(saved: SavedCalibration) -> SavedCalibration:
     """The same without passwords."""
-    return _with_sources(saved, [without_password(camera.source) for camera in saved.camera])
+    return with_sources(saved, [without_password(camera.source) for camera in saved.camera])
 
 
 def complete_sources(saved: SavedCalibration, folder: Path) -> SavedCalibration:
@@ -103,7 +103,7 @@ def complete_sources(saved: SavedCalibration, folder: Path) -> SavedCalibration:
     if not any(is_masked(camera.source) for camera in saved.camera):
         return saved
     addresses = stored_sources(folder)
-    return _with_sources(
+    return with_sources(
         saved,
         [addresses.get((camera.id, camera.source), camera.source) for camera in saved.camera],
     )
@@ -132,7 +132,8 @@ def _toml_escape(text: str) -> str:
     return tomli_w.dumps({"v": text})[len('v = "') : -len('"\n')]
 
 
-def _with_sources(saved: SavedCalibration, sources: Iterable[str]) -> SavedCalibration:
+def with_sources(saved: SavedCalibration, sources: Iterable[str]) -> SavedCalibration:
+    """The same with these sources, in the order of its cameras."""
     cameras = tuple(
         msgspec.structs.replace(camera, source=source)
         for camera, source in zip(saved.camera, sources, strict=True)
