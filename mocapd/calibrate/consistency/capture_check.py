@@ -148,13 +148,8 @@ class CaptureCheck:
         late_s = {finding.cameras[0]: finding.late_s for finding in late if finding.is_mended}
         stretches = self._stretches(there, [late_s.get(camera.name, 0.0) for camera in cameras])
         names = tuple(camera.name for camera in cameras)
-        turned = turned_views(
-            cameras,
-            [
-                [view for stretch in stretches for view in stretch[i][:1]]
-                for i in range(len(cameras))
-            ],
-        )
+        first = [[view for part in stretches for view in part[i][:1]] for i in range(len(cameras))]
+        turned = tuple(turned_views(cameras, first))
         if len(cameras) == 1:
             return CheckResult(
                 turned,

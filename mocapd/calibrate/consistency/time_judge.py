@@ -1,6 +1,6 @@
 """Checks the times of cameras' pictures by common motion."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,7 +48,7 @@ def judge_times(cameras: Sequence[CameraTiming]) -> TimeVerdict:
     rate = None if any(jumps) else _wrong_rate(cameras, delays)
     if rate is not None:
         return TimeVerdict((rate,), (True,) * len(cameras))
-    findings = _late_findings(cameras, delays, jumps)
+    findings = tuple(_late_findings(cameras, delays, jumps))
     concerned = {name for finding in findings for name in finding.cameras}
     alike = tuple(
         camera.name in concerned
@@ -63,14 +63,12 @@ def _late_findings(
     cameras: Sequence[CameraTiming],
     delays: Sequence[CameraDelay | None],
     jumps: Sequence[tuple[float, float] | None],
-) -> tuple[CaptureFinding, ...]:
-    out = []
+) -> Iterator[CaptureFinding]:
     for camera, delay, jump in zip(cameras, delays, jumps, strict=True):
         if jump is not None:
-            out.append(_jump_finding(camera, *jump))
+            yield _jump_finding(camera, *jump)
         elif delay is not None and _is_reliable(delay) and _is_late(delay):
-            out.append(_late(camera, delay))
-    return tuple(out)
+            yield _late(camera, delay)
 
 
 def _is_reliable(delay: CameraDelay) -> bool:

@@ -1,6 +1,6 @@
 """Checks whether people stand upright on the floor of a rig's world, and have a person's size."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -107,9 +107,8 @@ def _size_finding(names: tuple[str, ...], size: float, stature_m: float | None) 
 
 def turned_views(
     cameras: Sequence[Camera], people: Sequence[Sequence[PersonView]]
-) -> tuple[CaptureFinding, ...]:
+) -> Iterator[CaptureFinding]:
     """Cameras in whose pictures people do not stand along the rig's vertical; people: of each camera."""
-    out = []
     for camera, views in zip(cameras, people, strict=True):
         turns_deg = [
             _median_deg(angles)
@@ -122,15 +121,12 @@ def turned_views(
             continue
         turn_deg = _median_deg(turned)
         quarters = round(turn_deg / 90.0) * 90
-        out.append(
-            CaptureFinding(
-                Mistake.TURNED,
-                (camera.name,),
-                f"people in the pictures of {camera.name!r} are turned by {quarters} degrees against the rig's vertical",
-                "turn the video back, or calibrate it so; if all are turned: is +y up in rig.json, and R world-to-camera?",
-            )
+        yield CaptureFinding(
+            Mistake.TURNED,
+            (camera.name,),
+            f"people in the pictures of {camera.name!r} are turned by {quarters} degrees against the rig's vertical",
+            "turn the video back, or calibrate it so; if all are turned: is +y up in rig.json, and R world-to-camera?",
         )
-    return tuple(out)
 
 
 def _median_deg(angles_deg: Sequence[float]) -> float:

@@ -1,6 +1,6 @@
 """Diagnoses why cameras do not see the board, in a job, for cameras without a sighting for a while."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -109,13 +109,12 @@ class BoardAdvice:
                 return
         self._diagnoses[name] = diagnosis
 
-    def problems(self, now_ns: int, wanted: Mapping[str, bool]) -> tuple[Problem, ...]:
+    def problems(self, now_ns: int, wanted: Mapping[str, bool]) -> Iterator[Problem]:
         """Of cameras that are `wanted` to see the board and do not.
 
         No problem while another camera sees it.
         """
         anyone = any(now_ns - t_ns < _BLIND_NS for t_ns in self._saw_ns.values())
-        problems = []
         for name, diagnosis in self._diagnoses.items():
             reason = diagnosis.answer.reason
             if not wanted.get(name, False) or now_ns - diagnosis.t_ns > _longest_ns(diagnosis):
@@ -124,8 +123,7 @@ class BoardAdvice:
                 continue
             detail = diagnosis.answer.detail
             what = f"{reason}" + (f": {detail}" if detail else "")
-            problems.append(Problem(what, name, _LIVE_FIX[reason]))
-        return tuple(problems)
+            yield Problem(what, name, _LIVE_FIX[reason])
 
 
 def _longest_ns(diagnosis: _Diagnosis) -> int:

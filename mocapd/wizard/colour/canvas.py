@@ -1,5 +1,6 @@
 """One camera's picture with its strokes on the page: for drawing, and with the solution's preview."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from mocapd.errors import Problem
@@ -78,11 +79,9 @@ def problems_of(solved: CameraSolution, camera: str) -> list[Problem]:
     return [Problem(problem.what, camera, problem.fix) for problem in solved.problems]
 
 
-def outlines(solved: CameraSolution) -> tuple[Shape, ...]:
+def outlines(solved: CameraSolution) -> Iterator[Shape]:
     """Outlines and names of things outside the wearer with the shirt's colours."""
-    shapes: list[Shape] = []
     for lookalike in solved.alike:
         corners = tuple((float(x), float(y)) for x, y in lookalike.polygon_px)
-        shapes.append(Shape("polygon", corners, "hint"))
-        shapes.append(Shape("text", corners[:1], "hint", lookalike.name))
-    return tuple(shapes)
+        yield Shape("polygon", corners, "hint")
+        yield Shape("text", corners[:1], "hint", lookalike.name)

@@ -198,7 +198,7 @@ class ColourStep:
             cameras[name] = canvas.details(base, solved, self._solutions, pictures)
             if solved is not None:
                 problems += problems_of(solved, name)
-                overlays[name] = outlines(solved)
+                overlays[name] = tuple(outlines(solved))
         shirt = standard_shirt()
         details: dict[str, Json] = {
             "phase": "countdown" if self._countdown else "frozen" if self._canvases else "aim",

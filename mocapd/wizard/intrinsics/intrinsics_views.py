@@ -1,6 +1,6 @@
 """One camera in the step Lens: its pictures of the board, its intrinsics, and its messages."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -116,18 +116,16 @@ class CameraIntrinsics:
             f"Show the board to {self.name}: here and there, tilted, still for a moment each time."
         )
 
-    def cells(self) -> tuple[Shape, ...]:
+    def cells(self) -> Iterator[Shape]:
         """The coverage map over the picture."""
         width, height = self.camera.size_px
         across, down = width / GRID[0], height / GRID[1]
-        shapes = []
         for row, column in np.argwhere(self.picked.counts).tolist():
             count = int(self.picked.counts[row, column])
             x, y = column * across - 0.5, row * down - 0.5
             at = ((x, y), (x + across, y), (x + across, y + down), (x, y + down))
             level = 1 + (count > 2) + (count > 5)
-            shapes.append(Shape("polygon", at, f"cell-{level}"))
-        return tuple(shapes)
+            yield Shape("polygon", at, f"cell-{level}")
 
     def details(self) -> dict[str, Json]:
         """For the page."""
