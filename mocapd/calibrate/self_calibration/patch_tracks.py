@@ -58,11 +58,9 @@ PatchObservation = Mapping[str, PatchSighting]  # by camera, of one frame set
 
 def place_nominally(bare_cameras: Sequence[Camera]) -> tuple[Camera, ...]:
     """The cameras with their intrinsics alone, each at the nominal pose of a single webcam."""
-    out = []
-    for camera in bare_cameras:
-        guess = nominal_rig(camera.name, camera.size_px).cameras[0]
-        out.append(replace(camera, R=guess.R, t_m=guess.t_m))
-    return tuple(out)
+    usual = [nominal_rig(camera.name, camera.size_px).cameras[0] for camera in bare_cameras]
+    pairs = zip(bare_cameras, usual, strict=True)
+    return tuple(replace(camera, R=guess.R, t_m=guess.t_m) for camera, guess in pairs)
 
 
 class PatchTracks:

@@ -86,13 +86,11 @@ def walk_and_solve(
 
 def draft_cameras(draft: Draft) -> list[Camera]:
     """The draft's cameras with their intrinsics, at any pose."""
-    out = []
-    for camera in draft.cameras:
-        intrinsics = draft.intrinsics[camera.id]
-        out.append(
-            Camera(camera.id, camera.size_px, intrinsics.K, intrinsics.dist, np.eye(3), np.zeros(3))
-        )
-    return out
+    lenses = [(camera, draft.intrinsics[camera.id]) for camera in draft.cameras]
+    return [
+        Camera(camera.id, camera.size_px, lens.K, lens.dist, np.eye(3), np.zeros(3))
+        for camera, lens in lenses
+    ]
 
 
 def _follow(

@@ -232,14 +232,9 @@ class IntrinsicsStep:
         if any(lens is not draft.intrinsics.get(id_) for id_, lens in lenses.items()):
             draft = without_room(draft)
         earlier = draft.board_views if draft.board and same_print(draft.board, self._spec) else {}
-        of_draft = {
-            id_
-            for id_, camera in self._cameras.items()
-            if camera.taken and not camera.taken.from_file
-        }
-        saved = {
-            id_ for id_, camera in self._cameras.items() if camera.taken and camera.taken.from_file
-        }
+        taken = {id_: camera.taken for id_, camera in self._cameras.items() if camera.taken}
+        saved = {id_ for id_, offer in taken.items() if offer.from_file}
+        of_draft = taken.keys() - saved
         self._context.draft = replace(
             draft,
             board=self._spec,
