@@ -23,11 +23,9 @@ class Context(Protocol):
 
     def statuses(self) -> Mapping[str, CaptureStatus]:
         """The status of each camera, by id."""
-        ...
 
     def scene(self, scene: Scene) -> None:
         """Instruct a simulated person; no effect on real cameras."""
-        ...
 
     def start_job(self, job: Callable[[Tell], T], done: Callable[[T], None]) -> None:
         """Run a long job in the worker thread; `done` gets its result in the wizard's thread.
@@ -35,16 +33,13 @@ class Context(Protocol):
         A MocapdError of the job goes to the step's `job_failed`. One job at a time: a second raises AssertionError.
         After leaving the step the job's result is dropped: `done` is not called.
         """
-        ...
 
     def on_saved(self) -> None:
         """Called after writing the draft to the state directory."""
-        ...
 
     @property
     def job(self) -> tuple[str, float] | None:
         """The latest progress report of the running job; None without one."""
-        ...
 
 
 class Step(Protocol):
@@ -58,31 +53,24 @@ class Step(Protocol):
     @property
     def verbs(self) -> Verbs:
         """The present commands."""
-        ...
 
     def enter(self) -> None:
         """Called when the step is shown."""
-        ...
 
     def tick(self, now_ns: int) -> None:
         """About 20 times a second: look at the hub's newest frames, start jobs, change state."""
-        ...
 
     def command(self, command: Command) -> None:
         """A command of the user: one of `verbs`."""
-        ...
 
     def job_failed(self, error: MocapdError) -> None:
         """Called when the job raised this error."""
-        ...
 
     def view(self) -> StepView:
         """The view to show; called after every tick and command, so it must be quick."""
-        ...
 
     def leave(self) -> None:
         """Called before another step, or the wizard's end: undo temporary changes."""
-        ...
 
 
 class StepAround:
