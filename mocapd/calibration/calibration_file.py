@@ -124,16 +124,11 @@ def read_calibration(path: Path) -> SavedCalibration:
     return complete_sources(saved, path.parent)
 
 
-def read_setup(path: Path) -> SavedCalibration:
-    """The partial calibration of a setup in progress; sources without passwords.
+def read_tables(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
+    """The tables exactly as in the file, sources without passwords; perhaps of a setup in progress.
 
     Raises MissingError for a missing file, InputError, or ConfigError naming file and key for a damaged one.
     """
-    return read_tables(path, MOST_SETUP_BYTES)
-
-
-def read_tables(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
-    """The tables exactly as in the file. Raises as `read_setup`."""
     where = str(path)
     text = read_text(path, most_bytes)
     try:

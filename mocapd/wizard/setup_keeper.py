@@ -14,7 +14,7 @@ from pathlib import Path
 
 from mocapd.boundary.files import MissingError
 from mocapd.boundary.urls import without_password
-from mocapd.calibration.calibration_file import read_setup
+from mocapd.calibration.calibration_file import MOST_SETUP_BYTES, read_tables
 from mocapd.calibration.calibration_writing import remove_setup, write_setup
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 from mocapd.errors import (
@@ -239,7 +239,7 @@ def write_draft(path: Path, unfinished: UnfinishedSetup) -> None:
 
 def read_draft(path: Path) -> UnfinishedSetup:
     """Raises MissingError without a file, InputError, MalformedError or ConfigError for a damaged one, NewerFileError."""
-    saved = read_setup(path)
+    saved = read_tables(path, MOST_SETUP_BYTES)
     if saved.setup is None:
         raise MalformedError("is of a setup that was finished")
     try:

@@ -20,11 +20,6 @@ class ValueSearch:
         self.value = min(max(first, self._low), self._high)
         self.over = False
 
-    @property
-    def is_reached(self) -> bool:
-        """Whether the best value is within the tolerance."""
-        return self._best[0] <= math.log1p(self._tolerance)
-
     def report(self, reading: float) -> None:
         """Take the reading at `value`; sets the next value, or the best one at the end."""
         self._left -= 1
@@ -35,7 +30,8 @@ class ValueSearch:
         else:
             self._high = max(self.value - 1, self._low)
         following = round(math.sqrt(self._low * self._high))
-        if self.is_reached or self._left <= 0 or following == self.value:
+        is_reached = self._best[0] <= math.log1p(self._tolerance)
+        if is_reached or self._left <= 0 or following == self.value:
             self.value, self.over = self._best[1], True
         else:
             self.value = following

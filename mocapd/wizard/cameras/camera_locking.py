@@ -49,9 +49,6 @@ class _Aim:
     wanted: float
     tolerance: float
 
-    def is_met(self, recent: Recent) -> bool:
-        return _alike(self.reading(recent), self.wanted, self.tolerance)
-
 
 def _alike(one: float, other: float, tolerance: float) -> bool:
     return 1 / (1 + tolerance) <= (one + 1e-3) / (other + 1e-3) <= 1 + tolerance
@@ -182,7 +179,8 @@ class CameraLocking:
             return
         while self._aims:
             aim = self._aims[0]
-            self._search = None if aim.is_met(look) else self._search_for(aim)
+            is_met = _alike(aim.reading(look), aim.wanted, aim.tolerance)
+            self._search = None if is_met else self._search_for(aim)
             if self._search is not None:
                 self._search.report(aim.reading(look))
                 self._try(now_ns)

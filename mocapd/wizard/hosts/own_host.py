@@ -30,6 +30,8 @@ from mocapd.wizard.wizard import Wizard
 class OwnHost:
     """A Host (see web.host) from `start` to `stop`, used by its owner; `ended` by any thread."""
 
+    recordings = None  # a check of a few seconds is not recorded
+
     def __init__(
         self,
         draft: Draft,
@@ -125,11 +127,6 @@ class OwnHost:
 
     def body(self) -> BodySample | None:
         return self._shown.bodies.newest()
-
-    @property
-    def recordings(self) -> None:
-        """See Host: a check of a few seconds is not recorded."""
-        return
 
     def recenter(self) -> None:
         raise UnavailableError("no output runs here", "the setup", "start `mocapd run`")
