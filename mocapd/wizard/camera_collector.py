@@ -15,6 +15,5 @@ class CameraCollector(FrameCollector):
         self._names = frozenset(names)
 
     def put(self, frame: Frame) -> None:
-        """A frame of any camera."""
         if frame.camera in self._names:
             super().put(frame)

@@ -295,7 +295,6 @@ def nan_of(figure: float | None) -> float:
 
 
 def _login_name() -> str:
-    """The user's login name."""
     try:
         return getpass.getuser()
     except (KeyError, OSError):  # a service's user may have no name

@@ -97,7 +97,6 @@ class CaptureCheck:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of the checked cameras."""
         return tuple(self._buffers)
 
     def put(self, frame: Frame) -> None:
@@ -237,7 +236,6 @@ def _people(
 
 
 def _moving_s(meter: MotionMeter) -> float:
-    """Total time with motion."""
     signal = meter.signal()
     if len(signal.times_s) < 2:
         return 0.0

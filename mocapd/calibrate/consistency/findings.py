@@ -5,8 +5,6 @@ from enum import StrEnum
 
 
 class Mistake(StrEnum):
-    """The probable mistake."""
-
     DELAY = "delay"
     EXCHANGED = "exchanged"
     MIRRORED = "mirrored"

@@ -62,7 +62,6 @@ class SpreadSample:
         self._every = 1
 
     def offer(self, pixels: Bytes) -> None:
-        """Take the next picture."""
         if self._came % self._every == 0:
             grey = downscale(as_grey(pixels), _ASKED_PX)
             if len(self._sample) >= max(2, min(_ASKED, _ASKED_BYTES // grey.nbytes)):

@@ -35,7 +35,6 @@ class VisibleFloor:
 
     @property
     def area_m2(self) -> float:
-        """Of all cells [m2]."""
         return len(self.cells_m) * CELL_M**2
 
 

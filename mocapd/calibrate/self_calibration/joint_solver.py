@@ -33,8 +33,6 @@ _SMALLEST, _LARGEST = 0.6, 1.6  # factors, as in the tracker
 
 @dataclass(frozen=True, slots=True)
 class SelfCalibrationParams:
-    """Parameters of the solution."""
-
     keyframes: int = 64
     rounds: int = 20
     averaged: int = 8  # last rounds: steps end in the noise of whole pixels; their mean halves it

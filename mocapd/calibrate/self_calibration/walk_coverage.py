@@ -40,7 +40,6 @@ class Coverage:
         self._last_ns: int | None = None
 
     def add(self, observation: PatchObservation, t_ns: int) -> None:
-        """Add the observation at t_ns."""
         dt_s = 0.0 if self._last_ns is None else seconds(t_ns - self._last_ns)
         self._last_ns = t_ns
         dt_s = min(dt_s, _LONGEST_GAP_S)

@@ -46,7 +46,6 @@ def is_rescaled(a: BoardSpec, b: BoardSpec) -> bool:
 
 
 def form_of(spec: BoardSpec) -> dict[str, Json]:
-    """The form's fields."""
     return {
         "kind": spec.kind.value,
         "columns": spec.columns,

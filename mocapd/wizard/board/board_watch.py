@@ -35,7 +35,6 @@ class RecentFrames:
         self._frames: dict[str, deque[Frame]] = {}
 
     def put(self, frame: Frame) -> None:
-        """A frame of any camera."""
         with self._lock:
             self._frames.setdefault(frame.camera, deque(maxlen=_KEPT)).append(frame)
 
@@ -77,11 +76,9 @@ class BoardWatch:
         self._observations: dict[str, BoardObservation] = {}
 
     def start(self) -> None:
-        """Begin receiving frames."""
         self._hub.join(self._recent)
 
     def stop(self) -> None:
-        """Stop receiving frames."""
         self._hub.leave(self._recent)
 
     def change(self, spec: BoardSpec) -> None:

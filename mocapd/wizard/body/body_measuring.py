@@ -57,7 +57,6 @@ class VisibilityTimeout:
     left_s: float
 
     def update(self, took_s: float, *, visible: bool) -> None:
-        """Count one frame set."""
         if not visible:
             self.left_s -= min(took_s, _LONGEST_LOOK_S)
 

@@ -87,7 +87,6 @@ class CameraLocking:
 
     @property
     def share(self) -> float:
-        """Progress, 0..1."""
         return {LockPhase.LOCKED: 1.0, LockPhase.LOCKING: 0.8}.get(self.phase, self._share)
 
     @property
@@ -97,7 +96,6 @@ class CameraLocking:
         return units / UNITS_PER_S if units and self.phase is LockPhase.LOCKED else None
 
     def again(self) -> None:
-        """Start over."""
         self.phase, self.trouble, self.flicker, self._share = LockPhase.WAITING, (), None, 0.0
         self._mains_hz = None
 

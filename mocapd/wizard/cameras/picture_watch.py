@@ -74,7 +74,6 @@ class PictureWatch:
         }
 
     def put(self, frame: Frame) -> None:
-        """Note a frame."""
         rows, bgr = row_means(frame.pixels)
         with self._lock:
             own = self._frames.get(frame.camera)

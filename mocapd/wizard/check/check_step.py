@@ -57,8 +57,6 @@ _NOBODY_PLAIN = Problem(
 
 
 class Phase(StrEnum):
-    """The phase of the step."""
-
     MISSING = "missing"
     PREPARING = "preparing"
     LEAVING = "leaving"  # without a shirt: the wearer leaves the pictures

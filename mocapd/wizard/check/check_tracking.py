@@ -98,7 +98,6 @@ class CheckTracking:
         return tuple(measures.popleft() for _ in range(len(measures)))
 
     def metrics(self) -> Metrics:
-        """The pipeline's metrics."""
         return self._loop.metrics()
 
     def counts(self) -> Mapping[str, CameraCounts]:

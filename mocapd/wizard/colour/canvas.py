@@ -23,7 +23,6 @@ class Canvas:
     serial: int = 0
 
     def draw(self, strokes: Bytes, shirt: Bytes | None, by: str) -> None:
-        """Replace the strokes."""
         self.drawn = StrokeDrawing(replace(self.drawn.picture, labels=strokes), shirt)
         self.png, self.by, self.serial = encode_strokes(strokes), by, self.serial + 1
 
@@ -75,7 +74,6 @@ def canvas_of(picture: LabelledPicture) -> Canvas:
 
 
 def problems_of(solved: CameraSolution, camera: str) -> list[Problem]:
-    """Problems of a camera's strokes."""
     return [Problem(problem.what, camera, problem.fix) for problem in solved.problems]
 
 

@@ -47,8 +47,6 @@ _PATIENCE_NS = 8_000_000_000  # before the message that a camera shares no sight
 
 
 class BoardPhase(StrEnum):
-    """The phase of the method."""
-
     COLLECT = "collect"
     FLOOR = "floor"
     DONE = "done"

@@ -48,7 +48,6 @@ def plan_of_cameras(rig: Rig) -> dict[str, Json]:
 
 
 def advice_of(rig: Rig | None) -> tuple[Problem, ...]:
-    """Improvements of the rig."""
     return () if rig is None else tuple(rig_advice(visible_floor(rig), len(rig.cameras)))
 
 
@@ -74,7 +73,6 @@ def area_shapes(rig: Rig | None) -> Mapping[str, tuple[Shape, ...]]:
 
 
 def quality_of(made: WorldExtrinsics) -> dict[str, Json]:
-    """The agreement of the cameras."""
     return {
         "rms_px": round(made.rms_px, 3),
         "play_area_cm": round(made.play_area.median_cm, 2) if made.play_area else None,

@@ -105,7 +105,6 @@ class OwnHost:
 
     @property
     def is_saved(self) -> bool:
-        """Whether the draft is saved."""
         return self._saved.is_set()
 
     # -- Host ------------------------------------------------------------------------------------

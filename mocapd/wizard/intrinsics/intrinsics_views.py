@@ -38,8 +38,6 @@ class IntrinsicsOffer:
 
 @dataclass(slots=True, eq=False)
 class CameraIntrinsics:
-    """State of one camera."""
-
     camera: DraftCamera
     picked: PickedViews
     offered: IntrinsicsOffer | None = None
@@ -78,7 +76,6 @@ class CameraIntrinsics:
             self.intrinsics = intrinsics
 
     def refuse(self, error: MocapdError, tried: int) -> None:
-        """Take the job's error."""
         self.tried, self.refusal = tried, Problem.of(error)
 
     def use(self, offered: IntrinsicsOffer | None) -> None:
@@ -96,7 +93,6 @@ class CameraIntrinsics:
         return None
 
     def progress(self) -> float:
-        """0..1."""
         return 1.0 if self.intrinsics is not None else 0.95 * self.picked.progress()
 
     def sentence(self) -> str:
@@ -128,7 +124,6 @@ class CameraIntrinsics:
             yield Shape("polygon", at, f"cell-{level}")
 
     def details(self) -> dict[str, Json]:
-        """For the page."""
         return {
             "name": self.name,
             "views": len(self.picked.views),
