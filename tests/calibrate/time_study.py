@@ -110,7 +110,7 @@ def calibrate(case: Case) -> Outcome:
     began_s = time.perf_counter()
     sightings, clocks = record(case.session)
     try:
-        found = calibrate_sightings(sightings, clocks, SPEC, lambda *_: None, params=_PARAMS)
+        found = calibrate_sightings(sightings, clocks, SPEC, lambda *_: None, None, _PARAMS)
     except ConfigError as error:
         numbers = re.findall(r"([\d.]+) frames \(\d+ ms\) (behind|ahead)", str(error))
         refused = [float(n) * (1.0 if side == "behind" else -1.0) for n, side in numbers]

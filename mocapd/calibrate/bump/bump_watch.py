@@ -12,7 +12,7 @@ import numpy as np
 from mocapd.calibrate.bump.landmark_memory import LandmarkMemory
 from mocapd.clock import nanoseconds
 from mocapd.geometry import rotations
-from mocapd.types import Bytes, Floats
+from mocapd.types import Bytes
 
 _LEAST_TURN_DEG = 0.4  # of a bump: 2 cm at 3 m; that of a camera at rest is measured to 0.1
 _LASTING_S = 1.5  # debounce: leaning against the table is no bump
@@ -58,8 +58,10 @@ class BumpWatch:
         self._recognised_ns = t_ns
         self.turn_deg = float(np.degrees(np.linalg.norm(rotations.log(turned))))
         self._judge(t_ns)
-        if self.mounting is self._seems is Mounting.STEADY:
-            self._renew(t_ns, pixels, turned)
+        is_steady = self.mounting is self._seems is Mounting.STEADY
+        if is_steady and t_ns - self._renewed_ns >= nanoseconds(_RENEWED_S):
+            self._renewed_ns = t_ns
+            self._memory.renew(pixels, turned)
         return self.mounting
 
     def remember_unrecognised(self, t_ns: int, pixels: Bytes) -> None:
@@ -89,8 +91,3 @@ class BumpWatch:
             self._seems, self._since_ns = seems, t_ns
         if t_ns - self._since_ns >= nanoseconds(_LASTING_S):
             self.mounting, self._is_confirmed = seems, True
-
-    def _renew(self, t_ns: int, pixels: Bytes, turned: Floats) -> None:
-        if t_ns - self._renewed_ns >= nanoseconds(_RENEWED_S):
-            self._renewed_ns = t_ns
-            self._memory.renew(pixels, turned)

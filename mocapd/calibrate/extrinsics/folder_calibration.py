@@ -122,12 +122,11 @@ def calibrate_sightings(
     clocks: Mapping[str, RecordingTimes],
     spec: BoardSpec,
     progress: Progress,
-    floor_frame: int | None = None,
-    params: FolderParams | None = None,
+    floor_frame: int | None,
+    params: FolderParams,
     notes: Sequence[str] = (),
 ) -> FolderCalibration:
     """The rig of cameras with sightings of the board; `clocks[camera]`: times of their frames. Raises ConfigError."""
-    params = params or FolderParams()
     refuse_unseen(sightings)
     board_m = corners_m(spec)
     intrinsics_of = {}

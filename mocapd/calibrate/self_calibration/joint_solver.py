@@ -160,11 +160,13 @@ class JointSolver:
         n = self._body.n_pose
         out = _Evidence(np.zeros((self._n, self._n)), np.zeros(self._n), [])
         tolerable = p.tolerated_cost * float(np.median([cost_of(frame) for frame in rows]))
+        held = np.full(n, 1.0 / p.joint_sd_rad**2)
+        held[:6] = 1e-3  # root and hips are free
         for frame, frame_views in zip(rows, self._views, strict=True):
             if least_match_of(frame) < p.least_match or cost_of(frame) > tolerable:
                 out.follows.append(None)
                 continue
-            Hpp, bp = np.diag(self._pose_information()), np.zeros(n)
+            Hpp, bp = np.diag(held), np.zeros(n)
             Hps, Hss = np.zeros((n, self._n)), np.zeros((self._n, self._n))
             bs = np.zeros(self._n)
             for row, view in zip(frame, frame_views, strict=True):
@@ -221,11 +223,6 @@ class JointSolver:
             if follow is not None:
                 root, local = apply_step(self._body, root, local, follow[1] - follow[0] @ step)
             self._states[k] = replace(state, root_m=root, local_xyzw=local, factors=self._factors)
-
-    def _pose_information(self) -> Floats:
-        information = np.full(self._body.n_pose, 1.0 / self._p.joint_sd_rad**2)
-        information[:6] = 1e-3  # root and hips are free
-        return information
 
     def _columns(self, row: BodyRows, camera: int) -> Floats:
         """(P, n): maps the row's pose and shape columns to those of shape and cameras."""
