@@ -9,9 +9,7 @@ from mocapd.capture.origin import Origin
 def from_origin(origin: Origin) -> Calibration:
     """Its rig, its subject, and its pictures of the shirt. Raises InputError or ConfigError."""
     return Calibration(
-        origin.rig,
-        Wearer(origin.stature_m),
-        ShirtColours(origin.model(), origin.white_balance()),
+        origin.rig, Wearer(origin.stature_m), ShirtColours(origin.model(), origin.white_balance())
     )
 
 

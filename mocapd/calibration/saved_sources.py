@@ -104,8 +104,7 @@ def complete_sources(saved: SavedCalibration, folder: Path) -> SavedCalibration:
         return saved
     addresses = stored_sources(folder)
     return with_sources(
-        saved,
-        [addresses.get((camera.id, camera.source), camera.source) for camera in saved.camera],
+        saved, [addresses.get((camera.id, camera.source), camera.source) for camera in saved.camera]
     )
 
 

@@ -17,13 +17,7 @@ from mocapd.boundary.urls import without_password
 from mocapd.calibration.calibration_file import MOST_SETUP_BYTES, read_tables
 from mocapd.calibration.calibration_writing import remove_setup, write_setup
 from mocapd.capture.webcam.v4l2 import WebcamSettings
-from mocapd.errors import (
-    CannotCreateError,
-    InputError,
-    MalformedError,
-    MocapdError,
-    NewerFileError,
-)
+from mocapd.errors import CannotCreateError, InputError, MalformedError, MocapdError, NewerFileError
 from mocapd.quarantine import Why, quarantine
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.draft import Draft, DraftCamera, with_cameras

@@ -22,12 +22,7 @@ from mocapd.calibrate.self_calibration.body_rows import (
 from mocapd.clock import seconds
 from mocapd.errors import InputError
 from mocapd.fit.fit_params import FitParams
-from mocapd.fit.motion_state import (
-    MotionState,
-    apply_step,
-    initial_information,
-    step_between,
-)
+from mocapd.fit.motion_state import MotionState, apply_step, initial_information, step_between
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.fit.work_size import image_scales
@@ -156,10 +151,7 @@ class _Evidence:
     """Normal equations of the shape over all observations: H (N,N), b (N,), poses eliminated."""
 
     def __init__(
-        self,
-        rows: Sequence[Sequence[BodyRows]],
-        counted: Sequence[int],
-        model: BodyModel,
+        self, rows: Sequence[Sequence[BodyRows]], counted: Sequence[int], model: BodyModel
     ) -> None:
         n, n_shape = model.n_pose, model.n_shape
         self.H, self.b = np.zeros((n_shape, n_shape)), np.zeros(n_shape)

@@ -85,10 +85,7 @@ class CaptureCheck:
     """Collects pictures and judges them; for one thread."""
 
     def __init__(
-        self,
-        rig: Rig,
-        stature_m: float | None = None,
-        breathe: Callable[[], object] = bool,
+        self, rig: Rig, stature_m: float | None = None, breathe: Callable[[], object] = bool
     ) -> None:
         """breathe: called every few milliseconds of `result`, where others need the processor."""
         self._breathe = breathe

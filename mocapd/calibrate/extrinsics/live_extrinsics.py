@@ -34,10 +34,7 @@ _DIST = (0.02, 0.05, 0.001, 0.001, 0.05)
 
 
 def solve_live(
-    intrinsics_of: Mapping[str, Intrinsics],
-    spec: BoardSpec,
-    views: Views,
-    earlier: frozenset[int],
+    intrinsics_of: Mapping[str, Intrinsics], spec: BoardSpec, views: Views, earlier: frozenset[int]
 ) -> tuple[SceneExtrinsics, WorldExtrinsics]:
     """The extrinsics of the cameras of `intrinsics_of`, in its order, and a guess of the world.
 
@@ -64,9 +61,7 @@ def solve_live(
 
 
 def _solve(
-    intrinsics_of: Mapping[str, Intrinsics],
-    spec: BoardSpec,
-    views: Views,
+    intrinsics_of: Mapping[str, Intrinsics], spec: BoardSpec, views: Views
 ) -> tuple[SceneExtrinsics, WorldExtrinsics]:
     chosen = {
         name: _choose(name, intrinsics.size_px, views) for name, intrinsics in intrinsics_of.items()

@@ -44,9 +44,7 @@ class PrintPose:
 
 
 def suspect(
-    names: Sequence[str],
-    poses: Mapping[str, Mapping[int, PrintPose]],
-    board_m: Floats,
+    names: Sequence[str], poses: Mapping[str, Mapping[int, PrintPose]], board_m: Floats
 ) -> Suspicion | None:
     """None where the cameras fit as they are, or no hypothesis makes them fit; `poses[camera][index]`."""
     pairs = [(a, b, sorted(poses[a].keys() & poses[b].keys())) for a, b in combinations(names, 2)]

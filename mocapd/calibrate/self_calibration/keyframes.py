@@ -32,9 +32,7 @@ class Keyframe:
 
 
 def choose_keyframes(
-    observations: Sequence[PatchObservation],
-    names: Sequence[str],
-    count: int,
+    observations: Sequence[PatchObservation], names: Sequence[str], count: int
 ) -> list[Keyframe]:
     """Up to `count` observations by at least two cameras, spread over time, with high confidence and low speed."""
     chosen = _select(observations, names, count, _LEAST_CONFIDENCE)

@@ -112,8 +112,7 @@ class BodyStep:
                     self._found(measured)
 
         context.start_job(
-            lambda report: measure(hub, draft, cache_dir, watched, report, make_tracker),
-            done,
+            lambda report: measure(hub, draft, cache_dir, watched, report, make_tracker), done
         )
 
     def _found(self, measured: BodyMeasurement) -> None:

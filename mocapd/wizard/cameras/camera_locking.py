@@ -63,12 +63,7 @@ class CameraLocking:
     """
 
     def __init__(
-        self,
-        camera: str,
-        fps_hz: float,
-        given: Controls,
-        locks: CameraLocks,
-        watch: PictureWatch,
+        self, camera: str, fps_hz: float, given: Controls, locks: CameraLocks, watch: PictureWatch
     ) -> None:
         self.camera = camera
         self.phase = LockPhase.WAITING

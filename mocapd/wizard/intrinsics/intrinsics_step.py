@@ -36,14 +36,7 @@ from mocapd.wizard.intrinsics.saved_intrinsics import (
     read_intrinsics,
 )
 from mocapd.wizard.step import Scene, Shape, StepState, StepView, Tell
-from mocapd.wizard.step_commands import (
-    LENS,
-    Board,
-    Finish,
-    MeasureLens,
-    Ruler,
-    UseSaved,
-)
+from mocapd.wizard.step_commands import LENS, Board, Finish, MeasureLens, Ruler, UseSaved
 from mocapd.wizard.step_names import StepName
 
 _SEEN_NS = 500_000_000  # how long a camera counts as the user's target after a sighting
