@@ -186,5 +186,5 @@ def test_real_webcams(shared_dir: Path, tmp_path: Path) -> None:
     reference = json.loads((folder / "calib_opencv.json").read_text())["cameras"]
     assert found.board.inverted
     assert list(found.cameras) == [one["name"] for one in reference][:3]
-    print(found.rms_px, {name: one.rms_px for name, one in found.cameras.items()})
+    print(found.rms_px, {name: one.fit.rms_px for name, one in found.cameras.items()})
     assert found.rms_px <= 1.0

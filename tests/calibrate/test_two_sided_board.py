@@ -104,8 +104,8 @@ def test_four_cameras_around_the_wearer_are_found(calibrated: FolderCalibration)
     error_m, scale = off_m(RIG, calibrated.rig)
     for name, off in zip(NAMES, error_m, strict=True):
         one = calibrated.cameras[name]
-        print(f"{name}: {100 * off:.3f} cm off, {one.backs} backs in {one.views} views")
-        assert 0 < one.backs < one.views
+        print(f"{name}: {100 * off:.3f} cm off, {one.backs} backs in {one.fit.views} views")
+        assert 0 < one.backs < one.fit.views
     print(
         f"scale: {100 * scale:+.3f} %, {calibrated.positions} positions, {calibrated.rms_px:.2f} px"
     )

@@ -198,15 +198,15 @@ def _as_dict(result: "FolderCalibration") -> dict[str, object]:
         "positions": result.positions,
         "cameras": {
             name: {
-                "rms_px": round(report.rms_px, 4),
+                "rms_px": round(report.fit.rms_px, 4),
                 "held_out_px": round(report.held_out_px, 4),
-                "views": report.views,
+                "views": report.fit.views,
                 "backs": report.backs,
                 "pictures": report.pictures,
                 "covered": round(report.covered, 3),
                 "delay_frames": round(report.delay_frames, 3),
-                "focal_deviation": round(report.focal_deviation, 5),
-                "place_cm": round(report.place_cm, 3),
+                "focal_deviation": round(report.fit.focal_deviation, 5),
+                "place_cm": round(report.fit.place_cm, 3),
             }
             for name, report in result.cameras.items()
         },
@@ -214,7 +214,7 @@ def _as_dict(result: "FolderCalibration") -> dict[str, object]:
             name: {
                 "no_board": report.no_board,
                 "views": list(report.refused_views),
-                "corners": report.refused_corners,
+                "corners": report.fit.refused_corners,
             }
             for name, report in result.cameras.items()
         },
@@ -235,8 +235,8 @@ def _as_text(result: "FolderCalibration", out: Path) -> str:
     cm = "" if area is None else f", {area.median_cm:.2f} cm in the play area"
     lines = [f"{out}: {result.rms_px:.2f} px{cm}, {result.positions} positions of the board"]
     lines += [
-        f"{name}  {report.rms_px:.2f} px, {report.held_out_px:.2f} px held out, "
-        f"{report.views} of {report.pictures} pictures"
+        f"{name}  {report.fit.rms_px:.2f} px, {report.held_out_px:.2f} px held out, "
+        f"{report.fit.views} of {report.pictures} pictures"
         + (
             f", {report.delay_frames:+.2f} frames late"
             if abs(report.delay_frames) >= _WORTH_SAYING

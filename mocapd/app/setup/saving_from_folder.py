@@ -62,7 +62,7 @@ def save_from_folder(
         extrinsics_quality=ExtrinsicsQuality(
             "board",
             result.rms_px,
-            {name: report.rms_px for name, report in result.cameras.items()},
+            {name: report.fit.rms_px for name, report in result.cameras.items()},
             math.nan if area is None else area.median_cm,
         ),
         floor_known=floor_known,
@@ -78,9 +78,9 @@ def _lens(camera: Camera, report: CameraReport) -> Intrinsics:
         camera.K,
         camera.dist,
         np.ones(len(camera.dist), bool),
-        report.rms_px,
+        report.fit.rms_px,
         report.held_out_px,
-        tuple(range(report.views)),
+        tuple(range(report.fit.views)),
         (),
-        report.focal_deviation,
+        report.fit.focal_deviation,
     )

@@ -49,23 +49,18 @@ class FolderParams:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraReport:
-    """One camera: `rms_px` in the joint solution, `held_out_px` of its intrinsics, `views` in the joint solution,
-    `backs` of the pictures show the board's back, `no_board` of them no board. `delay_frames`: how much later than the
-    first camera it exposes pictures of one stamp, at first where frames are lost; `place_cm`: bound of the error of its
-    position."""
+    """One camera: `fit` in the joint solution, `held_out_px` of its intrinsics; `backs` of the pictures show the board's
+    back, `no_board` of them no board. `delay_frames`: how much later than the first camera it exposes pictures of one stamp,
+    at first where frames are lost."""
 
-    rms_px: float
+    fit: CameraFit
     held_out_px: float
-    views: int
     backs: int
     pictures: int
     no_board: int
     covered: float
     delay_frames: float
-    focal_deviation: float
-    place_cm: float
     refused_views: tuple[int, ...]
-    refused_corners: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -267,16 +262,12 @@ def _report(
     one: BoardSighting, intrinsics: Intrinsics, fit: CameraFit, delay_frames: float
 ) -> CameraReport:
     return CameraReport(
-        fit.rms_px,
+        fit,
         intrinsics.held_out_px,
-        fit.views,
         sum(view.back for view in one.views.values()),
         one.pictures,
         one.pictures - len(one.views),
         covered_share(list(one.views.values()), one.recording.size_px),
         delay_frames,
-        fit.focal_deviation,
-        fit.place_cm,
         intrinsics.thrown_out,
-        fit.refused_corners,
     )
