@@ -5,14 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.model import BodyModel, shaped
-from mocapd.body.posing_kernels import forward_kinematics
+from mocapd.body.model import BodyModel, shape_of
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.body.skeleton import INDEX, N_JOINTS
+from mocapd.body.skeleton import INDEX, global_from_local, joint_positions
 from mocapd.calibrate.body_shape.body_shape_fit import ShapeFit
 from mocapd.errors import Problem
 from mocapd.fit.motion_state import MotionState
-from mocapd.types import Floats
+from mocapd.types import Pose
 
 TOLERATED = 0.06  # people of one stature differ by some 2 %, so 6 % is an error
 _ALIKE = 0.04  # two scales that differ by less agree
@@ -85,11 +84,9 @@ def _percent(ratio: float) -> str:
 
 
 def _neck_m(state: MotionState, model: BodyModel) -> float:
-    rest: Floats = shaped(model, state.factors)[1]
-    R, joints = np.empty((N_JOINTS, 3, 3)), np.empty((N_JOINTS, 3))
-    quats = np.empty((N_JOINTS, 4))
-    forward_kinematics(model.parents, rest, state.root_m, state.local_xyzw, R, joints, quats)
-    return float(joints[_NECK, 1])
+    skeleton = skeleton_of(shape_of(model, state.factors))
+    pose = Pose(state.root_m, global_from_local(skeleton, state.local_xyzw))
+    return float(joint_positions(skeleton, pose)[_NECK, 1])
 
 
 def lengths_cm(shape: BodyShape) -> dict[str, float]:
