@@ -6,7 +6,7 @@ Its commands are `step_commands.BODY`.
 from collections.abc import Mapping
 from dataclasses import replace
 
-from mocapd.body.shape import BodyShape, mean_shape
+from mocapd.body.shape import mean_shape
 from mocapd.calibrate.body_shape.body_scale import lengths_cm, scale_trouble
 from mocapd.errors import InputError, MocapdError, Problem
 from mocapd.wizard.body.body_measuring import (
@@ -158,13 +158,9 @@ class BodyStep:
         draft = self._context.draft
         state, sentence, progress = self._status()
         missing = self._missing()
-        shape: BodyShape | None = None
-        if draft.stature_m is not None:
-            shape = (
-                mean_shape(draft.stature_m)
-                if draft.factors is None
-                else BodyShape(draft.stature_m, draft.factors)
-            )
+        usual = shape = None if draft.stature_m is None else mean_shape(draft.stature_m)
+        if usual is not None and draft.factors is not None:
+            shape = replace(usual, factors=draft.factors)
         details: dict[str, Json] = {
             "stature_m": draft.stature_m,
             "has_shirt": draft.has_shirt,
@@ -173,7 +169,7 @@ class BodyStep:
             "why_not": "" if missing is None else missing.what,
             "measured": draft.factors is not None,
             "lengths_cm": {} if shape is None else lengths_cm(shape),
-            "usual_cm": {} if draft.stature_m is None else lengths_cm(mean_shape(draft.stature_m)),
+            "usual_cm": {} if usual is None else lengths_cm(usual),
             "pictures": list(self._pictures),
         }
         return StepView(

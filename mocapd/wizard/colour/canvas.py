@@ -39,10 +39,11 @@ class Canvas:
 
         solutions: the number of solutions so far.
         """
+        solved = solved or CameraSolution(self.drawn, ())
         picture, strokes = f"{base}.jpg", f"{base}-strokes-{self.serial}.png"
         pictures[picture], pictures[strokes] = self.jpeg, self.png
         preview = None
-        if solved is not None and solved.preview is not None:
+        if solved.preview is not None:
             # the bytes also change with the other cameras' strokes: the wearer's colours are common
             preview = f"{base}-seen-{solutions}.png"
             pictures[preview] = solved.preview
@@ -52,17 +53,13 @@ class Canvas:
             "strokes": strokes,
             "by": self.by,
             "seen": preview,
-            "ok": solved is not None and solved.W is not None,
-            "marks": []
-            if solved is None
-            else [list(p) for problem in solved.problems for p in problem.at_px],
-            "alike": []
-            if solved is None
-            else [
+            "ok": solved.W is not None,
+            "marks": [list(p) for problem in solved.problems for p in problem.at_px],
+            "alike": [
                 {"name": lookalike.name, "at": lookalike.polygon_px.tolist()}
                 for lookalike in solved.alike
             ],
-            "note": "" if solved is None else solved.note,
+            "note": solved.note,
         }
 
 
