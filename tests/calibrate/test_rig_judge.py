@@ -70,7 +70,7 @@ def test_a_rig_that_fits_gives_no_finding(rig: str) -> None:
     verdict = judge(cameras, stretches(cameras))
     assert verdict.findings == ()
     assert verdict.off_m == 0.0
-    assert judge_world(("a",), verdict.fits, 1.75) == ()
+    assert judge_world(("a",), verdict.fits, 1.75) is None
     views = [[one[i][0] for one in stretches(cameras)] for i in range(len(cameras))]
     assert not [*turned_views(cameras, views)]
 
@@ -131,7 +131,8 @@ def test_a_world_that_is_not_y_up_is_named_with_what_mends_it(
 ) -> None:
     cameras = RIGS["pair"]
     turned = [replace(one, R=one.R @ np.array(world, float)) for one in cameras]
-    [finding] = judge_world(("left",), judge(turned, stretches(cameras)).fits, 1.75)
+    finding = judge_world(("left",), judge(turned, stretches(cameras)).fits, 1.75)
+    assert finding is not None
     assert finding.mistake is Mistake.AXES
     assert re.search(said, str(finding))
     columns = re.search(r"\((.*)\)", finding.fix)
@@ -147,7 +148,8 @@ def _column(word: str) -> Floats:
 
 def test_a_rig_in_feet_is_named() -> None:
     cameras = [replace(one, t_m=one.t_m / 0.3048) for one in RIGS["pair"]]
-    [finding] = judge_world(("left",), judge(cameras, stretches(RIGS["pair"])).fits, None)
+    finding = judge_world(("left",), judge(cameras, stretches(RIGS["pair"])).fits, None)
+    assert finding is not None
     assert finding.mistake is Mistake.UNIT
     assert "feet" in finding.what
 
@@ -176,7 +178,7 @@ def test_views_of_two_rooms_contradict_each_other() -> None:
 def test_a_zoom_of_an_eighth_shows_in_where_joints_meet_and_none_does_not() -> None:
     cameras = RIGS["pair"]
     seen = stretches(cameras)
-    assert scaled_findings(cameras, seen) == ()
+    assert not [*scaled_findings(cameras, seen)]
     larger = [[one[0], [zoom_view(one[1][0], (320.0, 240.0), 1.12)]] for one in seen]
     [finding] = scaled_findings(cameras, larger)
     assert finding.mistake is Mistake.ZOOMED

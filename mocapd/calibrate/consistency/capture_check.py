@@ -155,7 +155,7 @@ class CaptureCheck:
         verdict = judge(cameras, stretches, times.moves_alike)
         pictures = [buffer.newest for buffer in there]
         findings = with_the_room(cameras, pictures, verdict.findings)
-        if not findings and (scaled := scaled_findings(cameras, stretches)):
+        if not findings and (scaled := tuple(scaled_findings(cameras, stretches))):
             findings = with_the_room(cameras, pictures, scaled)
         if not findings and not all(times.moves_alike):
             # cameras at their places with other times
@@ -165,8 +165,8 @@ class CaptureCheck:
         if any(not finding.is_mended for finding in late):
             # views at different instants contradict each other for that reason alone
             findings = tuple(finding for finding in findings if finding.mistake not in _BY_TIME)
-        if not findings:
-            findings = judge_world(names, verdict.fits, self._stature_m)
+        if not findings and (of_world := judge_world(names, verdict.fits, self._stature_m)):
+            findings = (of_world,)
         if turned and not any(
             finding.mistake in (Mistake.TURNED, Mistake.AXES, Mistake.INVERTED)
             for finding in findings

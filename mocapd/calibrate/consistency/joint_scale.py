@@ -5,7 +5,7 @@ joints have no common scale. Enlarging one camera's pictures about their middle 
 epipolar lines in every stretch of time, or in none (robust linear least squares).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -30,7 +30,7 @@ _LEAST_STRETCHES = 2
 
 def scaled_findings(
     cameras: Sequence[Camera], stretches: Sequence[Stretch]
-) -> tuple[CaptureFinding, ...]:
+) -> Iterator[CaptureFinding]:
     """Findings of the two cameras that disagree most about the size of people; empty without a clear case."""
     worst, which = _BOTH, None
     for i, j in combinations(range(len(cameras)), 2):
@@ -48,17 +48,15 @@ def scaled_findings(
             if held > worst:
                 worst, which = held, (i, j, sense)
     if which is None:
-        return ()
+        return
     i, j, sense = which
     first, second = ("larger", "smaller") if sense > 0.0 else ("smaller", "larger")
     a, b = cameras[i].name, cameras[j].name
-    return (
-        CaptureFinding(
-            Mistake.ZOOMED,
-            (a, b),
-            f"people are {first} in the pictures of {a!r} than calibrated, or {second} in those of {b!r}",
-            "were their pictures cut, zoomed or letterboxed after calibration? Record as then, or calibrate again",
-        ),
+    yield CaptureFinding(
+        Mistake.ZOOMED,
+        (a, b),
+        f"people are {first} in the pictures of {a!r} than calibrated, or {second} in those of {b!r}",
+        "were their pictures cut, zoomed or letterboxed after calibration? Record as then, or calibrate again",
     )
 
 

@@ -1,6 +1,6 @@
 """Checks a rig against its cameras' views of people, and searches for a mistake that explains a contradiction."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -60,7 +60,7 @@ def judge(
         assert best.mistake is not None
         finding = CaptureFinding(best.mistake, names, best.what, best.fix)
         return RigVerdict((finding,), tuple(table.fits(best).values()), _off_m(given.values()))
-    lone = _contradicting(cameras, given, moves_alike or (True,) * len(cameras))
+    lone = tuple(_contradicting(cameras, given, moves_alike or (True,) * len(cameras)))
     return RigVerdict(lone, tuple(given.values()), _off_m(given.values()) if lone else 0.0)
 
 
@@ -197,7 +197,7 @@ def _cost_about(fits: Mapping[_Pair, PairFit], affected: Sequence[int]) -> float
 
 def _contradicting(
     cameras: Sequence[Camera], given: Mapping[_Pair, PairFit], moves_alike: Sequence[bool]
-) -> tuple[CaptureFinding, ...]:
+) -> Iterator[CaptureFinding]:
     """A camera that never agrees with any other one, for any reason."""
     out = []
     for i, camera in enumerate(cameras):
@@ -210,21 +210,19 @@ def _contradicting(
         if np.percentile(off_deg, 25) > (_CONTRADICT_DEG if moves_alike[i] else _STRANGE_DEG):
             out.append((i, camera.name, float(np.median(off_deg))))
     if not out:
-        return ()
+        return
     names = tuple(name for _, name, _ in out)
     off = max(off for _, _, off in out)
     others = "each other" if len(names) == len(cameras) else "the other cameras"
     never = (
         "" if all(moves_alike[i] for i, _, _ in out) else ", and does not move at the same times"
     )
-    return (
-        CaptureFinding(
-            Mistake.CONTRADICTION,
-            names,
-            f"what {' and '.join(map(repr, names))} shows of people contradicts {others} by {off:.1f} degrees{never}; "
-            "no exchange, mirror or turn makes it agree",
-            "are these the videos of this rig, of one room and one time? Calibrate again where a camera was moved",
-        ),
+    yield CaptureFinding(
+        Mistake.CONTRADICTION,
+        names,
+        f"what {' and '.join(map(repr, names))} shows of people contradicts {others} by {off:.1f} degrees{never}; "
+        "no exchange, mirror or turn makes it agree",
+        "are these the videos of this rig, of one room and one time? Calibrate again where a camera was moved",
     )
 
 

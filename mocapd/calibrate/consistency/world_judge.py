@@ -39,33 +39,31 @@ _COLUMNS = {  # of R, by the up axis of the given world: y up is wanted
 
 def judge_world(
     names: tuple[str, ...], fits: Sequence[PairFit], stature_m: float | None
-) -> tuple[CaptureFinding, ...]:
-    """Implausible properties of the people in views that agree."""
+) -> CaptureFinding | None:
+    """An implausible property of the people in views that agree."""
     wide = [
         fit
         for fit in fits
         if fit.parallax_deg > _PARALLAX_DEG and np.isfinite(fit.size) and fit.cost < _AGREES
     ]
     if len(wide) < _LEAST:
-        return ()
+        return None
     up = np.sum([fit.count * fit.up for fit in wide], axis=0)
     up /= max(float(np.linalg.norm(up)), 1e-9)
     if up[1] < np.cos(np.radians(_UPRIGHT_DEG)):
-        return (_tilt_finding(names, up),)
+        return _tilt_finding(names, up)
     size = float(np.median([fit.size for fit in wide])) * STATURE_M / (stature_m or STATURE_M)
     if not _SIZES[0] < size < _SIZES[1]:
-        return (_size_finding(names, size, stature_m),)
+        return _size_finding(names, size, stature_m)
     floors = [fit.floor_m for fit in wide if np.isfinite(fit.floor_m)]
     if len(floors) > 1 and not _FLOOR_M[0] < float(np.median(floors)) < _FLOOR_M[1]:
-        return (
-            CaptureFinding(
-                Mistake.AXES,
-                names,
-                f"feet are {float(np.median(floors)):+.1f} m from the rig's floor",
-                "the floor is where y = 0: move the rig's origin there, or calibrate the room again",
-            ),
+        return CaptureFinding(
+            Mistake.AXES,
+            names,
+            f"feet are {float(np.median(floors)):+.1f} m from the rig's floor",
+            "the floor is where y = 0: move the rig's origin there, or calibrate the room again",
         )
-    return ()
+    return None
 
 
 def _tilt_finding(names: tuple[str, ...], up: Floats) -> CaptureFinding:
