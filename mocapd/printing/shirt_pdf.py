@@ -173,18 +173,10 @@ def _draw_small(
         if numbered:
             _draw_grid(canvas, tiling, scale)
         for patch in piece.patches:
-            _, colour = colour_of(patch.index)
+            ink = ink_on(colour_of(patch.index)[1])
             x, y = centre_of(patch.outline)
-            mark = (x, y - 1.5 / scale)
-            write_text(
-                canvas,
-                mark,
-                str(patch.index),
-                4 / scale,
-                font=BOLD,
-                colour=ink_on(colour),
-                align="centre",
-            )
+            at, figure = (x, y - 1.5 / scale), str(patch.index)
+            write_text(canvas, at, figure, 4 / scale, font=BOLD, colour=ink, align="centre")
         canvas.restoreState()
 
 

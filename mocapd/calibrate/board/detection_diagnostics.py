@@ -94,7 +94,10 @@ def _of_markers(detector: BoardDetector, grey: Bytes) -> DetectionFailure | None
     spec = detector.spec
     ids = detector.markers(grey)
     if spec.two_sided:
-        grey, ids = _clearer_side(detector, grey, ids)
+        mirrored = mirror_image(grey)
+        others = detector.markers(mirrored)
+        if len(others) > len(ids):  # a view of the back
+            grey, ids = mirrored, others
     # first, since a mirrored marker may well be another marker of a large dictionary
     elif _is_mirrored(detector, grey, len(ids)):
         return DetectionFailure(Reason.MIRRORED)
@@ -131,13 +134,6 @@ def _of_own_markers(spec: BoardSpec, ids: Ints, grey: Bytes) -> DetectionFailure
 def _few(spec: BoardSpec, ids: Ints) -> DetectionFailure:
     detail = f"{len(ids)} of {spec.columns * spec.rows // 2} markers"
     return DetectionFailure(Reason.FEW, detail, len(ids))
-
-
-def _clearer_side(detector: BoardDetector, grey: Bytes, ids: Ints) -> tuple[Bytes, Ints]:
-    """The picture and its markers, or its mirror image where that has more markers: a view of the back."""
-    mirrored = mirror_image(grey)
-    others = detector.markers(mirrored)
-    return (mirrored, others) if len(others) > len(ids) else (grey, ids)
 
 
 def _misfit(spec: BoardSpec, ids: Ints, grey: Bytes) -> DetectionFailure:

@@ -11,7 +11,7 @@ back; people take nothing back that the points show.
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import combinations
 
 from mocapd.calibrate.bump.changed_places import PlacesVerdict, places_of
@@ -31,10 +31,10 @@ class _Pair:
     is_by_people: bool = False  # evidence of people that they changed places
     looks: int = 0
     next_ns: int = 0
-    names: tuple[str, str] = field(init=False)
 
-    def __post_init__(self) -> None:
-        self.names = self.cameras[0].name, self.cameras[1].name
+    @property
+    def names(self) -> tuple[str, str]:
+        return self.cameras[0].name, self.cameras[1].name
 
     def is_due(self, t_ns: int) -> bool:
         if t_ns < self.next_ns or self.places is PlacesVerdict.RIGHT:
