@@ -95,15 +95,8 @@ def draft_of(saved: SavedCalibration, path: Path) -> Draft:
     }
     return Draft(
         cameras=tuple(
-            DraftCamera(
-                camera.id,
-                camera.source,
-                camera.size_px,
-                camera.fps_hz,
-                camera.controls,
-                camera.label,
-            )
-            for camera in saved.camera
+            DraftCamera(one.id, one.source, one.size_px, one.fps_hz, one.controls, one.label)
+            for one in saved.camera
         ),
         board=saved.board,
         board_views={
@@ -113,9 +106,7 @@ def draft_of(saved: SavedCalibration, path: Path) -> Draft:
         },
         intrinsics=intrinsics,
         intrinsics_saved=frozenset(
-            camera.id
-            for camera in saved.camera
-            if camera.lens is not None and camera.lens.from_earlier
+            one.id for one in saved.camera if one.lens is not None and one.lens.from_earlier
         ),
         rig=calibration.rig,
         extrinsics_quality=None

@@ -32,11 +32,7 @@ class PlayAreaError:
 
 
 def world_on_floor(
-    scene: ReprojectionProblem,
-    position: int,
-    middle_m: Floats,
-    where: str,
-    two_sided: bool = False,
+    scene: ReprojectionProblem, position: int, middle_m: Floats, where: str, two_sided: bool = False
 ) -> RigidTransform:
     """world_from_scene of a board that lies on the floor, face up, at this position; its middle is the origin.
 

@@ -83,15 +83,10 @@ class PatchTracks:
             )
         self.cameras = place_nominally(bare_cameras)
         rigs = [Rig((camera,)) for camera in self.cameras]
+        shirts = [ShirtCue(rig, stature_m, colour_model, white_balance, database) for rig in rigs]
         self._trackers = [
-            BodyTracker(
-                "shirt",
-                rig,
-                stature_m,
-                ShirtCue(rig, stature_m, colour_model, white_balance, database),
-                None,
-            )
-            for rig in rigs
+            BodyTracker("shirt", rig, stature_m, shirt, None)
+            for rig, shirt in zip(rigs, shirts, strict=True)
         ]
         self._shapes = [mean_shape(stature_m) for _ in rigs]
         self.observations: list[PatchObservation] = []

@@ -35,10 +35,7 @@ class ExtrinsicsWithWearer:
     verbs = WEARER_ROOM
 
     def __init__(
-        self,
-        context: Context,
-        load: LoadDatabase = pose_database,
-        params: WalkParams | None = None,
+        self, context: Context, load: LoadDatabase = pose_database, params: WalkParams | None = None
     ) -> None:
         self._context, self._load = context, load
         self._params = params if params is not None else WalkParams()

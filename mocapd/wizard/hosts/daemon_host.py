@@ -209,10 +209,7 @@ def _with_what_was_saved(
         return cameras, replace(saved, cameras=cameras)
     # input of the user that need not be repeated
     return cameras, Draft(
-        cameras=cameras,
-        board=saved.board,
-        stature_m=saved.stature_m,
-        has_shirt=saved.has_shirt,
+        cameras=cameras, board=saved.board, stature_m=saved.stature_m, has_shirt=saved.has_shirt
     )
 
 
