@@ -7,6 +7,7 @@ search.
 """
 
 import math
+import threading
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -20,7 +21,7 @@ from mocapd.wizard.commands import Command
 from mocapd.wizard.context import Context
 from mocapd.wizard.draft import ExtrinsicsQuality
 from mocapd.wizard.extrinsics.rig_plan import plan_of_cameras
-from mocapd.wizard.extrinsics.wearer_walk import SEEN, Walk, WearerExtrinsics, walk_and_solve
+from mocapd.wizard.extrinsics.wearer_walk import SEEN, WearerExtrinsics, walk_and_solve
 from mocapd.wizard.step import Json, Scene, StepState, StepView
 from mocapd.wizard.step_commands import WEARER_ROOM, StartWalk, StopWalk
 from mocapd.wizard.step_names import StepName
@@ -39,7 +40,7 @@ class ExtrinsicsWithWearer:
     ) -> None:
         self._context, self._load = context, load
         self._params = params if params is not None else WalkParams()
-        self._walk: Walk | None = None  # during a job
+        self._walk: threading.Event | None = None  # during a job: a request to stop it
         self._walk_next = False
         self._refusal: Problem | None = None
         self._found: WearerExtrinsics | None = None
@@ -79,7 +80,7 @@ class ExtrinsicsWithWearer:
     # -- work ------------------------------------------------------------------------------------
 
     def _start(self) -> None:
-        context, walk = self._context, Walk()
+        context, walk = self._context, threading.Event()
         self._walk, self._refusal = walk, None
         hub, draft, cache_dir = context.hub, context.draft, context.cache_dir
         load, params = self._load, self._params
@@ -112,7 +113,7 @@ class ExtrinsicsWithWearer:
 
     def _stop(self) -> None:
         if self._walk is not None:
-            self._walk.stop.set()
+            self._walk.set()
             self._walk = None
         self._walk_next = False
 

@@ -1,7 +1,7 @@
 """The job of the extrinsics without a board: tracks the wearer in every camera alone, then solves."""
 
 import threading
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -36,18 +36,11 @@ class WearerExtrinsics:
     walked_m: Floats
 
 
-@dataclass(slots=True, eq=False)
-class Walk:
-    """Shared by the job and the step: a request to stop."""
-
-    stop: threading.Event = field(default_factory=threading.Event)
-
-
 def walk_and_solve(
     hub: FrameHub,
     draft: Draft,
     cache_dir: Path,
-    walk: Walk,
+    stop: threading.Event,
     progress: Tell,
     load: LoadDatabase,
     params: WalkParams,
@@ -65,7 +58,7 @@ def walk_and_solve(
     database = load(cache_dir, lambda what, share: progress(what, READY * share))
     tracks = PatchTracks(bare_cameras, draft.stature_m, colours, W, database)
     if not _follow(
-        hub, tracks, Coverage([c.name for c in bare_cameras], params), walk, progress, params
+        hub, tracks, Coverage([c.name for c in bare_cameras], params), stop, progress, params
     ):
         return None
     progress("working out where the cameras stand", SEEN)
@@ -97,7 +90,7 @@ def _follow(
     hub: FrameHub,
     tracks: PatchTracks,
     coverage: Coverage,
-    walk: Walk,
+    stop: threading.Event,
     progress: Tell,
     params: WalkParams,
 ) -> bool:
@@ -107,7 +100,7 @@ def _follow(
     hub.join(collector)
     try:
         while coverage.share < 1.0:
-            if walk.stop.is_set():
+            if stop.is_set():
                 return False
             if monotonic_ns() > give_up_ns:
                 raise _too_little(coverage)
