@@ -31,10 +31,8 @@ _USUAL_FOCAL = 0.95  # in picture widths
 _WORTH = 0.97  # a further coefficient must lower the held-out error to this part of it
 # requirements for using intrinsics
 FEWEST_VIEWS = 6
-_MOST_RMS_PX, _MOST_HELD_OUT_PX = (
-    1.5,
-    2.0,
-)  # of pictures up to 1280 px wide, in larger ones in proportion
+# of pictures up to 1280 px wide, in larger ones in proportion
+_MOST_RMS_PX, _MOST_HELD_OUT_PX = 1.5, 2.0
 _LEAST_TILT_RAD = 0.17  # between the boards of the most different views
 _VIEW_RMS = 2.5  # a view with more than this many times the median error is an outlier
 
