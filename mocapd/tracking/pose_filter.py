@@ -11,28 +11,27 @@ dt (1/f - 1) (1 - g) / (1 - g + g l). The correction moves along with the body a
 """
 
 from collections.abc import Collection
-from dataclasses import astuple, dataclass, field, replace
-from functools import cache, partial
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
-from mocapd.body.bones import NAMES
-from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions
+from mocapd.body.skeleton import N_JOINTS, joint_positions
 from mocapd.clock import nanoseconds, seconds
 from mocapd.fit.fit_params import TICK_S
 from mocapd.geometry import rotations
+from mocapd.tracking.bone_gains import (
+    END_OF_BONE,
+    LOWER,
+    MANY,
+    MANY_NOISE,
+    SHIRT_TRUNK_BONES,
+    gains_of,
+)
 from mocapd.tracking.pose_filter_kernels import follow_bones, moving_share
 from mocapd.tracking.trunk_and_legs import LOWER_BONES
-from mocapd.types import Floats, Ints, Pose, Skeleton
+from mocapd.types import Floats, Pose, Skeleton
 
-_LEADS_TO = {
-    "Shoulder": "UpperArm", "UpperArm": "LowerArm", "LowerArm": "Hand",
-    "UpperLeg": "LowerLeg", "LowerLeg": "Foot", "neck": "head",
-}  # fmt: skip
-_KIND_OF = {
-    "UpperArm": "upper_arm", "LowerArm": "forearm", "Hand": "forearm",
-    "UpperLeg": "thigh", "LowerLeg": "shank", "Foot": "shank", "Toes": "shank",
-}  # fmt: skip
 _RESET_AFTER_S = 0.5  # a longer gap resets the filter
 _SHORTEST_TICKS = 0.1  # least time step, also between frames of equal time
 _LEAST_STEP_M = 0.01  # of a joint in a frame, however short
@@ -40,35 +39,17 @@ _HALVINGS = 10  # bisection steps: resolves a step of a metre to a millimetre
 
 
 @dataclass(frozen=True, slots=True)
-class BoneGains:
-    """How the filter gain of a bone depends on joint confidence."""
+class Carrier:
+    """cues: names of those that carry the body; shirt: it places trunk and arms; cameras: how many show the body."""
 
-    sure: float  # confidence for full gain
-    doubtful: float  # confidence for the least gain
-    least: float
-    doubtful_rad_s: float  # greatest angular speed at low confidence
-    sure_rad_s: float = 20.0  # the same at full gain
-    power: float = 1.0  # exponent of the gain between both; above 1 lowers it
-    goes_on: float = 0.75  # share of its speed that remains at the next frame
-    noise_rad: float = 0.15  # how far from where it is expected a bone that stays is found at most
-    trust_s: float = 0.35  # until an unconfirmed bone is fully trusted again
+    cues: str
+    shirt: bool
+    cameras: int
 
-
-# without the shirt: at equal confidence an arm's error and jumps are twice those of a leg
-_CLOTHES = {
-    "trunk": BoneGains(1.6, 0.25, 0.25, 5.4),
-    "upper_arm": BoneGains(1.1, 0.0, 0.17, 3.0, power=1.5),
-    "forearm": BoneGains(1.1, 0.0, 0.15, 4.0, power=1.5),
-    "thigh": BoneGains(2.0, 0.2, 0.43, 9.5),
-    "shank": BoneGains(1.6, 0.15, 0.3, 8.5),
-}
-# the shirt's colours mistake arms less, and its trunk hardly ever: it is found to 0.3 mm and 2 mrad of where it stays
-_SHIRT_ARM = BoneGains(
-    0.6, 0.0, 0.4, 15.0, sure_rad_s=60.0, goes_on=0.0, noise_rad=0.04, trust_s=0.7
-)
-_SHIRT_TRUNK = BoneGains(
-    1e-6, 0.0, 1.0, 60.0, sure_rad_s=60.0, goes_on=0.0, noise_rad=0.0, trust_s=1e-3
-)
+    @property
+    def many(self) -> bool:
+        """See `MANY`."""
+        return self.cameras >= MANY
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +118,7 @@ class PoseFilter:
         """Filters a rest pose once, so that the first person need not wait for the kernel to compile or load."""
         rest = Pose(np.zeros(3), np.tile(rotations.IDENTITY_XYZW, (N_JOINTS, 1)))
         for frame in range(2):
-            self.step(rest, np.ones(N_JOINTS), frame, "shirt", True, skeleton)
+            self.step(rest, np.ones(N_JOINTS), frame, Carrier("shirt", True, 1), skeleton)
         self.reset()
 
     def reset(self) -> None:
@@ -159,32 +140,29 @@ class PoseFilter:
         found: Pose,
         confidence: Floats,
         t_ns: int,
-        carrier: str,
-        by_shirt: bool,
+        by: Carrier,
         skeleton: Skeleton,
         jumped: Collection[int] = (),
         legs_since_ns: int | None = None,
     ) -> Pose:
         """The pose to publish for a measured pose with joint confidence (J,).
 
-        carrier: names of the carrying cues; by_shirt: the shirt places trunk and arms; jumped: bones that were relocated
-        and did not move there; legs_since_ns: first fit of legs and head.
+        by: what carries the body; jumped: bones that were relocated and did not move there; legs_since_ns: first fit of legs
+        and head.
         """
         p, last = self._params, self._last
         if last is None or seconds(t_ns - last.t_ns) >= _RESET_AFTER_S:
             self.reset()
-            trust = confidence[_END_OF_BONE]
-            self._last = FilterState(t_ns, carrier, found, found, trust, t_ns)
+            trust = confidence[END_OF_BONE]
+            self._last = FilterState(t_ns, by.cues, found, found, trust, t_ns)
             return found
         expected = self._extrapolate(last)
-        if last.carrier != carrier:
+        if last.carrier != by.cues:
             self._changed_ns, self._way_m = t_ns, None
-        now = self._filter_pose(
-            found, confidence, t_ns, carrier, by_shirt, last, jumped, legs_since_ns
-        )
+        now = self._filter_pose(found, confidence, t_ns, by, last, jumped, legs_since_ns)
         leaps = self._changed_ns is not None and self._leaps(now, last, skeleton)
-        arms_jumped = by_shirt and not set(jumped) <= _LOWER
-        if last.carrier != carrier or arms_jumped or leaps:
+        arms_jumped = by.shirt and not set(jumped) <= LOWER
+        if last.carrier != by.cues or arms_jumped or leaps:
             self._correction = _correction_between(expected, now.smooth, skeleton, p)
         if self._correction is not None:
             step_m = min(
@@ -223,22 +201,21 @@ class PoseFilter:
         found: Pose,
         confidence: Floats,
         t_ns: int,
-        carrier: str,
-        by_shirt: bool,
+        by: Carrier,
         last: FilterState,
         jumped: Collection[int],
         legs_since_ns: int | None,
     ) -> FilterState:
-        p, trust = self._params, confidence[_END_OF_BONE]
-        gains, trust_s = _gains(by_shirt)
-        if by_shirt:
-            trust[_SHIRT_TRUNK_BONES] = 1.0
+        p, trust = self._params, confidence[END_OF_BONE]
+        gains, trust_s = gains_of(by.shirt, by.many)
+        if by.shirt:
+            trust[SHIRT_TRUNK_BONES] = 1.0
         elif t_ns - last.since_ns < nanoseconds(p.settles_s):
-            return FilterState(t_ns, carrier, found, found, trust, last.since_ns)
-        if last.carrier != carrier:  # the offset begins at what the new cues found
+            return FilterState(t_ns, by.cues, found, found, trust, last.since_ns)
+        if last.carrier != by.cues:  # the offset begins at what the new cues found
             return FilterState(
                 t_ns,
-                carrier,
+                by.cues,
                 found,
                 found,
                 trust,
@@ -262,7 +239,7 @@ class PoseFilter:
         expected_m = last.smooth.root_m + gap_s * moving
         way_m = found.root_m - expected_m
         speed_m_s = float(np.linalg.norm(last.moving_m_s))
-        noise_m = 0.0 if by_shirt else p.noise_m
+        noise_m = 0.0 if by.shirt else p.noise_m * (MANY_NOISE if by.many else 1.0)
         share = follows[0] * moving_share(way_m, speed_m_s, memory[0], ticks, noise_m)
         root_m = expected_m + share * way_m
         moving += learned[0] * ((root_m - last.smooth.root_m) / gap_s - moving)
@@ -271,7 +248,7 @@ class PoseFilter:
         pose = Pose(root_m, quats)
         lag_s = _lag_s(gap_s, follows, learned, gains[6] ** ticks, trust)
         return FilterState(
-            t_ns, carrier, pose, pose, trust, last.since_ns, turning, moving, lag_s, memory
+            t_ns, by.cues, pose, pose, trust, last.since_ns, turning, moving, lag_s, memory
         )
 
 
@@ -312,38 +289,3 @@ def _shrink_correction(
         else:
             too_little = middle
     return replace(offset, share=enough)
-
-
-def _bone_ends() -> tuple[Ints, list[str]]:
-    """The joint (J,) at the end of each bone, which sets the confidence of its direction; and each bone's kind."""
-    ends, kinds = [], []
-    for name in NAMES:
-        side = next((s for s in ("left", "right") if name.startswith(s)), "")
-        bone = name.removeprefix(side)
-        ends.append(INDEX[side + _LEADS_TO.get(bone, bone)])
-        kinds.append(_KIND_OF.get(bone, "trunk"))
-    return np.array(ends), kinds
-
-
-_END_OF_BONE, _KIND_OF_BONE = _bone_ends()
-_ARMS = ("upper_arm", "forearm")
-_HEAD = (INDEX["neck"], INDEX["head"])
-_LOWER = frozenset(LOWER_BONES.tolist())
-_SHIRT_TRUNK_BONES = np.array(
-    [j for j, kind in enumerate(_KIND_OF_BONE) if kind == "trunk" and j not in _HEAD]
-)
-
-
-@cache
-def _gains(by_shirt: bool) -> tuple[Floats, Floats]:
-    """Gains (8,J) of each bone for `follow_bones`, and (J,) its trust_s."""
-    rows = []
-    for j, kind in enumerate(_KIND_OF_BONE):
-        gains = _CLOTHES[kind]
-        if by_shirt and kind in _ARMS:
-            gains = _SHIRT_ARM
-        elif by_shirt and j in _SHIRT_TRUNK_BONES:
-            gains = _SHIRT_TRUNK
-        rows.append(astuple(gains))
-    table = np.array(rows, np.float64).T
-    return np.ascontiguousarray(table[:8]), table[8].copy()

@@ -25,7 +25,7 @@ from mocapd.tracking.joint_confidence import (
     keypoint_agreement,
     shirt_confidence,
 )
-from mocapd.tracking.pose_filter import PoseFilter
+from mocapd.tracking.pose_filter import Carrier, PoseFilter
 from mocapd.tracking.track_state import TrackState, upper_body_state
 from mocapd.tracking.tracking_state import confidence_fade, grow_uncertainty
 from mocapd.tracking.trunk_and_legs import LOWER_BONES
@@ -79,9 +79,8 @@ def publish_body(
     carrier = _carrier(state)
     jumped = _doubtful_bones(state, motion, estimates, clothes) if away_s == 0.0 else ()
     skeleton = skeleton_of(shape)
-    pose = pose_filter.step(
-        unfiltered, confidence, t_ns, carrier, state.by_shirt, skeleton, jumped, state.legs_since_ns
-    )
+    by = Carrier(carrier, state.by_shirt, len(state.cameras))
+    pose = pose_filter.step(unfiltered, confidence, t_ns, by, skeleton, jumped, state.legs_since_ns)
     joints_m = joint_positions(skeleton, pose)
     unfiltered_m = joint_positions(skeleton, unfiltered)
     behind_m = np.linalg.norm(joints_m - unfiltered_m, axis=1) / np.sqrt(3.0)

@@ -27,6 +27,7 @@ class ShirtLocator:
     def reset(self) -> None:
         """Forgets the separate track."""
         self._next_attempt_ns = 0
+        self._missing_ns: int | None = None  # since when, while no body was found by it
         self.has_searched = False  # in the last frame set
         self.separate_track: TrackState | None = None
         self.separate_since_ns = 0
@@ -46,8 +47,7 @@ class ShirtLocator:
     ) -> ShirtEstimate | None:
         """Trunk and arms from the shirt; None if it is not found. predicted: the body, dt_s after `state`; is_trusted:
         the shirt was trusted a moment ago, so a failed fit is repeated at once; keypoints: of the body."""
-        p, cue = self._params, self._cue
-        self.has_searched = True
+        cue, self.has_searched = self._cue, True
         if state.trunk is not None:
             found = cue.follow(state, predicted, dt_s, present, keypoints, frame_index, probe)
         elif self.separate_track is not None:
@@ -59,16 +59,29 @@ class ShirtLocator:
             self.has_searched = False
             return None
         else:
-            self._next_attempt_ns = t_ns + nanoseconds(p.covered_pause_s)
+            pause_s = self._pause_s(t_ns)
+            self._next_attempt_ns = t_ns + nanoseconds(pause_s)
             found = cue.start_from(predicted, state.taught_s, present, frame_index)
             if found is None and cue.is_search_due(t_ns):
-                found = cue.search(wearer, present, t_ns, 2.0 * p.covered_pause_s, 0.0, frame_index)
+                found = cue.search(wearer, present, t_ns, 2.0 * pause_s, 0.0, frame_index)
             probe("shirt.detect")
+        if found is not None:
+            self._missing_ns = None
         if state.by_shirt:
             found = self._redetect_if_uncertain(found, wearer, present, t_ns, frame_index, probe)
         else:
             self._update_separate_track(found, predicted, wearer, t_ns)
         return found
+
+    def _pause_s(self, t_ns: int) -> float:
+        """Until the next attempt, after one at t_ns: who has worn no shirt for long hardly puts one on."""
+        p = self._params
+        if self._missing_ns is None:
+            self._missing_ns = t_ns
+        missing_s = seconds(t_ns - self._missing_ns)
+        return float(
+            np.clip(p.covered_share * missing_s, p.covered_pause_s, p.most_covered_pause_s)
+        )
 
     def search(
         self, wearer: BodyShapeEstimate, present: dict[int, float], t_ns: int, frame_index: int

@@ -43,7 +43,10 @@ class ShirtParams:
     uncertain_pause_s: float = 0.4  # between such searches
     uncertain_gain: float = 0.05  # by which the match must be better to replace the track
     search_pause_s: float = 0.1  # between attempts that failed, while no person is tracked
-    covered_pause_s: float = 0.2  # between searches on a body that clothes place
+    # between searches on a body that clothes place: at least, at most, and as a share of how long the shirt is missing
+    covered_pause_s: float = 0.2
+    most_covered_pause_s: float = 1.0
+    covered_share: float = 0.25
     # trunks nearer than this are one body: errors of cloth, shape and lag stay below it
     near_m: float = 0.3
     neighbours: int = 6  # of the pose database, per camera

@@ -1,8 +1,12 @@
-"""A shirt that hardly agrees with the pictures is looked for in all of them while it is tracked."""
+"""When a shirt is looked for: one that hardly agrees with the pictures while it is tracked, and one that is missing the less
+often, the longer it is."""
 
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
+
+from mocapd.clock import nanoseconds
 from mocapd.tracking.base import no_probe
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtEstimate
 from mocapd.tracking.cues.shirt.shirt_locator import ShirtLocator
@@ -40,3 +44,21 @@ def test_after_a_search_that_found_nothing_better_the_body_is_drawn_again_to_lea
 def test_a_shirt_that_agrees_is_not_looked_for_elsewhere() -> None:
     followed, kept = located(0.9, None)
     assert kept is followed
+
+
+def test_a_shirt_that_is_missing_for_long_is_looked_for_once_a_second() -> None:
+    """Who takes a jacket off after a moment has the shirt again at once; who wears none pays little for `auto`."""
+    nothing: Any = None
+    cue: Any = SimpleNamespace(
+        params=ShirtParams(), is_search_due=lambda _: False, start_from=lambda *_: None
+    )
+    state: Any = SimpleNamespace(trunk=None, by_shirt=False, taught_s=0.0)
+    locator, tried_s = ShirtLocator(cue, nothing, 0.6), []
+    for k in range(30 * 20):
+        at = nanoseconds(k / 30)
+        locator.locate(state, nothing, nothing, 1 / 30, {}, at, k, False, (), no_probe)
+        if locator.has_searched:
+            tried_s.append(k / 30)
+    pauses_s = np.diff(tried_s)
+    assert pauses_s[:4].max() <= 0.24
+    assert 0.9 <= pauses_s[-1] <= 1.04

@@ -1,0 +1,99 @@
+"""How closely the pose filter follows each bone, by what carries the body."""
+
+from dataclasses import astuple, dataclass, replace
+from functools import cache
+
+import numpy as np
+
+from mocapd.body.bones import NAMES
+from mocapd.body.skeleton import INDEX
+from mocapd.tracking.trunk_and_legs import LOWER_BONES
+from mocapd.types import Floats, Ints
+
+_LEADS_TO = {
+    "Shoulder": "UpperArm", "UpperArm": "LowerArm", "LowerArm": "Hand",
+    "UpperLeg": "LowerLeg", "LowerLeg": "Foot", "neck": "head",
+}  # fmt: skip
+_KIND_OF = {
+    "UpperArm": "upper_arm", "LowerArm": "forearm", "Hand": "forearm",
+    "UpperLeg": "thigh", "LowerLeg": "shank", "Foot": "shank", "Toes": "shank",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class BoneGains:
+    """How the filter gain of a bone depends on joint confidence."""
+
+    sure: float  # confidence for full gain
+    doubtful: float  # confidence for the least gain
+    least: float
+    doubtful_rad_s: float  # greatest angular speed at low confidence
+    sure_rad_s: float = 20.0  # the same at full gain
+    power: float = 1.0  # exponent of the gain between both; above 1 lowers it
+    goes_on: float = 0.75  # share of its speed that remains at the next frame
+    noise_rad: float = 0.15  # how far from where it is expected a bone that stays is found at most
+    trust_s: float = 0.35  # until an unconfirmed bone is fully trusted again
+
+
+# without the shirt: at equal confidence an arm's error and jumps are twice those of a leg
+_CLOTHES = {
+    "trunk": BoneGains(1.6, 0.25, 0.25, 5.4),
+    "upper_arm": BoneGains(1.1, 0.0, 0.17, 3.0, power=1.5),
+    "forearm": BoneGains(1.1, 0.0, 0.15, 4.0, power=1.5),
+    "thigh": BoneGains(2.0, 0.2, 0.43, 9.5),
+    "shank": BoneGains(1.6, 0.15, 0.3, 8.5),
+}
+# three cameras and more tremble a third as much as two: what they find is published nearly as it is, with less lag
+MANY = 3
+MANY_NOISE = 0.5
+_CLOTHES_OF_MANY = {
+    kind: replace(
+        gains,
+        sure=gains.doubtful + 0.7 * (gains.sure - gains.doubtful),
+        goes_on=0.9,
+        noise_rad=MANY_NOISE * gains.noise_rad,
+    )
+    for kind, gains in _CLOTHES.items()
+}
+# the shirt's colours mistake arms less, and its trunk hardly ever: it is found to 0.3 mm and 2 mrad of where it stays
+_SHIRT_ARM = BoneGains(
+    0.6, 0.0, 0.4, 15.0, sure_rad_s=60.0, goes_on=0.0, noise_rad=0.04, trust_s=0.7
+)
+_SHIRT_TRUNK = BoneGains(
+    1e-6, 0.0, 1.0, 60.0, sure_rad_s=60.0, goes_on=0.0, noise_rad=0.0, trust_s=1e-3
+)
+
+
+def _bone_ends() -> tuple[Ints, list[str]]:
+    """The joint (J,) at the end of each bone, which sets the confidence of its direction; and each bone's kind."""
+    ends, kinds = [], []
+    for name in NAMES:
+        side = next((s for s in ("left", "right") if name.startswith(s)), "")
+        bone = name.removeprefix(side)
+        ends.append(INDEX[side + _LEADS_TO.get(bone, bone)])
+        kinds.append(_KIND_OF.get(bone, "trunk"))
+    return np.array(ends), kinds
+
+
+END_OF_BONE, _KIND_OF_BONE = _bone_ends()
+_ARMS = ("upper_arm", "forearm")
+_HEAD = (INDEX["neck"], INDEX["head"])
+LOWER = frozenset(LOWER_BONES.tolist())
+SHIRT_TRUNK_BONES = np.array(
+    [j for j, kind in enumerate(_KIND_OF_BONE) if kind == "trunk" and j not in _HEAD]
+)
+
+
+@cache
+def gains_of(by_shirt: bool, by_many: bool) -> tuple[Floats, Floats]:
+    """Gains (8,J) of each bone for `follow_bones`, and (J,) its trust_s. by_many: cameras show the body."""
+    rows, of_clothes = [], _CLOTHES_OF_MANY if by_many else _CLOTHES
+    for j, kind in enumerate(_KIND_OF_BONE):
+        gains = of_clothes[kind]
+        if by_shirt and kind in _ARMS:
+            gains = _SHIRT_ARM
+        elif by_shirt and j in SHIRT_TRUNK_BONES:
+            gains = _SHIRT_TRUNK
+        rows.append(astuple(gains))
+    table = np.array(rows, np.float64).T
+    return np.ascontiguousarray(table[:8]), table[8].copy()
