@@ -19,6 +19,8 @@ from mocapd.pipeline.smoothing import PRESETS
 from mocapd.trackers.registry import entry
 from mocapd.tracking.tracking_state import COAST_S, TrackingStateParams
 
+USUAL_RATE_HZ = 30.0  # of a webcam without a setup
+
 
 def default_cache_dir() -> Path:
     """$CACHE_DIRECTORY under systemd, else the XDG folder."""
@@ -53,7 +55,7 @@ class CameraSection:
     id: its name in the rig file
     source: the address that `mocapd cameras` or `camera-node` prints, a file, FOLDER#camN, a URL, or sim:NAME#camN; the error
       for an invalid one lists all forms
-    fps_hz: rate requested from a webcam [Hz]
+    fps_hz: rate requested from a webcam [Hz]; unset: the rate it was calibrated at, else 30
     wait_s: how long to wait for a picture of this camera after the first picture of the same instant [s], in place of
       bundler.wait_s; for network cameras
     white_balance: a picture of the shirt in the light of this room, with its `_strokes.png` in the same folder
@@ -61,10 +63,15 @@ class CameraSection:
 
     id: Annotated[str, Meta(min_length=1)]
     source: Annotated[str, Meta(min_length=1)]
-    fps_hz: Annotated[float, Meta(ge=0.1, le=1000)] = 30.0
+    fps_hz: Annotated[float, Meta(ge=0.1, le=1000)] | None = None
     wait_s: Annotated[float, Meta(ge=0, le=1)] | None = None
     white_balance: Path | None = None
     controls: ControlsSection = field(default_factory=ControlsSection)
+
+    @property
+    def rate_hz(self) -> float:
+        """The requested rate."""
+        return USUAL_RATE_HZ if self.fps_hz is None else self.fps_hz
 
 
 @dataclass(frozen=True, slots=True)

@@ -69,7 +69,7 @@ def camera_inputs(
         size_px = sizes.get(camera.id)
         settings = WebcamSettings(
             size_px=size_px or usual_px,
-            fps_hz=camera.fps_hz,
+            fps_hz=camera.rate_hz,
             controls=camera.controls,
         )
         others = tuple(identity for name, identity in identities.items() if name != camera.id)
@@ -78,7 +78,7 @@ def camera_inputs(
         )
         open_one = open_source if origin is None else origin.source
         source = open_one(camera.source, request)
-        rate_hz = camera.fps_hz if origin is None else origin.fps_hz
+        rate_hz = camera.rate_hz if origin is None else origin.fps_hz
         expected_hz = None if source.recorded else rate_hz
         inputs.append(CameraInput(source, camera.source, size_px or (0, 0), expected_hz))
     return tuple(inputs)

@@ -15,10 +15,10 @@ from mocapd.body.shape import BodyShape
 from mocapd.calibration.calibration_file import LoadedCalibration, find_calibration
 from mocapd.calibration.calibration_record import Calibration, ShirtColours
 from mocapd.calibration.from_origin import from_origin
+from mocapd.calibration.saved_calibration import SavedCamera
 from mocapd.calibration.saved_sources import require_password
 from mocapd.capture.kinds.source_kinds import cameras_of_origin, common_origin, open_origin
 from mocapd.capture.origin import camera_address
-from mocapd.capture.webcam.controls import Controls
 from mocapd.config.sections import CameraSection, Config, ControlsSection
 from mocapd.errors import ConfigError
 from mocapd.geometry.nominal_rig import DISTANCE_M, FIELD_OF_VIEW_DEG, HEIGHT_M, nominal_rig
@@ -144,13 +144,13 @@ def cameras_of(capture: str) -> tuple[CameraSection, ...]:
 def session_cameras(
     configured: tuple[CameraSection, ...], saved: LoadedCalibration | None, state_dir: Path
 ) -> tuple[CameraSection, ...]:
-    """The configured cameras, else the calibrated ones. Controls that the configuration leaves open are as the setup
-    locked them: a lens holds for one focus, colours for one exposure. Raises ConfigError where there are none, or a
-    password is missing."""
+    """The configured cameras, else the calibrated ones. The rate and controls that the configuration leaves open are
+    those of the setup: a lens holds for one focus, colours for one exposure. Raises ConfigError where there are none,
+    or a password is missing."""
     if configured:
-        locked = {} if saved is None else {one.id: one.controls for one in saved.tables.camera}
+        calibrated = {} if saved is None else {one.id: one for one in saved.tables.camera}
         return tuple(
-            replace(one, controls=_overlaid(locked.get(one.id, Controls()), one.controls))
+            _as_calibrated(one, calibrated[one.id]) if one.id in calibrated else one
             for one in configured
         )
     if saved is None:
@@ -172,9 +172,14 @@ def session_cameras(
     )
 
 
-def _overlaid(locked: Controls, configured: Controls) -> ControlsSection:
-    given = {name: value for name, value in asdict(configured).items() if value is not None}
-    return ControlsSection(**asdict(locked) | given)
+def _as_calibrated(camera: CameraSection, saved: SavedCamera) -> CameraSection:
+    """The camera with the rate and the controls of the calibration where the configuration leaves them open."""
+    given = {name: value for name, value in asdict(camera.controls).items() if value is not None}
+    return replace(
+        camera,
+        fps_hz=saved.fps_hz if camera.fps_hz is None else camera.fps_hz,
+        controls=ControlsSection(**asdict(saved.controls) | given),
+    )
 
 
 def _configured_shirt(model: Path | None, cameras: Iterable[CameraSection]) -> ShirtColours:

@@ -21,6 +21,7 @@ from mocapd.calibration.saved_sources import SECRETS
 from mocapd.capture.capture_folder import load_folder
 from mocapd.capture.kinds.folder_kind import FolderOrigin
 from mocapd.config.sections import CameraSection, Config, ControlsSection, TrackerSection
+from mocapd.doctor.gathering.camera_facts import wanted_cameras
 from mocapd.errors import ConfigError, InputError
 from mocapd.session.session import cameras_of, open_session, session_cameras
 from mocapd.wizard.saving import save_draft
@@ -83,6 +84,15 @@ def test_configured_cameras_keep_the_controls_that_the_setup_locked(config: Conf
     gained = CameraSection("cam1", source_of("cam1", "4-4"), controls=ControlsSection(gain=7))
     (camera,) = session_cameras((gained,), saved_for(config), config.state_dir)
     assert camera.controls == ControlsSection(exposure=150, gain=7)
+
+
+def test_a_configured_camera_is_opened_at_its_calibrated_rate(config: Config) -> None:
+    draft = full_draft()
+    slow = tuple(replace(camera, fps_hz=15.0) for camera in draft.cameras)
+    save_draft(replace(draft, cameras=slow), config.state_dir)
+    named = replace(config, camera=(CameraSection("cam1", source_of("cam1", "4-4")),))
+    assert [camera.expected_hz for camera in open_session(named, quiet).cameras] == [15.0]
+    assert [camera.fps_hz for camera in wanted_cameras(named, saved_for(named))] == [15.0]
 
 
 def test_other_cameras_do_not_take_it(config: Config, caplog: pytest.LogCaptureFixture) -> None:

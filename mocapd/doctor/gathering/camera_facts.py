@@ -21,15 +21,14 @@ def camera_facts(config: Config, saved: LoadedCalibration | None) -> CameraFacts
 
 def wanted_cameras(config: Config, saved: LoadedCalibration | None) -> tuple[DraftCamera, ...]:
     """Cameras of the configuration, else of the calibration; addresses without passwords."""
-    sizes = {camera.id: camera.size_px for camera in saved.tables.camera} if saved else {}
-    cameras = [(camera.id, camera.source, camera.fps_hz) for camera in config.camera]
-    if not cameras and saved is not None:
-        cameras = [(camera.id, camera.source, camera.fps_hz) for camera in saved.tables.camera]
-    usual_px = WebcamSettings().size_px
-    return tuple(
-        DraftCamera(name, without_password(source), sizes.get(name, usual_px), fps_hz)
-        for name, source, fps_hz in cameras
-    )
+    calibrated = {camera.id: camera for camera in saved.tables.camera} if saved else {}
+    usual = WebcamSettings()
+    cameras = []
+    for camera in config.camera or calibrated.values():
+        mode = calibrated.get(camera.id, usual)
+        source, fps_hz = without_password(camera.source), camera.fps_hz or mode.fps_hz
+        cameras.append(DraftCamera(camera.id, source, mode.size_px, fps_hz))
+    return tuple(cameras)
 
 
 def _overloaded_buses(

@@ -24,7 +24,7 @@ def configured_cameras(
         before[camera.id, camera.source]
         if (camera.id, camera.source) in before
         else DraftCamera(
-            camera.id, camera.source, picture_size(camera), camera.fps_hz, camera.controls
+            camera.id, camera.source, picture_size(camera), camera.rate_hz, camera.controls
         )
         for camera in cameras
     )
