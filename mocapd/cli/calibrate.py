@@ -56,9 +56,9 @@ def calibrate(
     """
     effective = effective_config(
         config, settings, cameras, state_dir=None if state_dir is None else str(state_dir)
-    ).config
+    )
     if from_folder.folder is not None:
-        calibrate_folder(from_folder.folder, from_folder, effective, force=force)
+        calibrate_folder(from_folder.folder, from_folder, effective.config, force=force)
         return
     if from_folder.needs_folder or force:
         raise UsageError(

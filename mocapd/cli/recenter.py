@@ -21,7 +21,7 @@ def recenter(config: ConfigOption = None, settings: SetOption = None) -> None:
     """
     from mocapd.control.target_process import target_daemon
 
-    report = target_daemon(config_to_look_after(config, settings)[0].config).recenter()
+    report = target_daemon(config_to_look_after(config, settings)[0]).recenter()
     side = "left" if report.yaw_deg >= 0.0 else "right"
     told = one_line(", ".join(report.outputs)) or "no output"
     print(

@@ -23,7 +23,7 @@ def web_link(config: ConfigOption = None, settings: SetOption = None) -> None:
     from mocapd.app.setup.chosen_page import target_page
     from mocapd.web.games.frames_access import FramesAccess
 
-    daemon = target_page(effective_config(config, settings).config)
+    daemon = target_page(effective_config(config, settings))
     if not daemon.status.origins:
         raise ConfigError(
             "the running mocapd allows no site",

@@ -58,6 +58,12 @@ class Effective:
     settings: tuple[Setting, ...]
     file: Path | None
 
+    @property
+    def chosen_instance(self) -> str:
+        """The instance that the command line names; empty if it names none."""
+        named = any(s.key.path == "instance" and s.origin == COMMAND_LINE for s in self.settings)
+        return self.config.instance if named else ""
+
 
 def all_keys() -> dict[str, Key]:
     """Every key by path, in the order of the documentation."""

@@ -141,6 +141,9 @@ def test_it_attaches_to_a_running_daemon_and_of_two_to_that_of_this_name_or_fold
                 outcome = mocapd_here(env, "calibrate", "--no-browser", *chosen)
                 assert outcome.code == 0, outcome.err
                 assert urls[name] in outcome.out
+            mistyped = mocapd_here(env, "calibrate", "--no-browser", "--set", "instance=caev")
+            assert mistyped.code == 69
+            assert "choose one that is: " in mistyped.err
             refused = mocapd_here(
                 env, "calibrate", "--no-browser", "--state-dir", tmp_path / "none"
             )

@@ -87,6 +87,21 @@ def test_of_several_the_one_that_is_named_else_all(
     assert "choose by --set instance=NAME" in say("reload").err
 
 
+def test_a_name_that_no_daemon_has_addresses_none(
+    say: Callable[..., Outcome], serve: Serve, tmp_path: Path
+) -> None:
+    serve(report(instance="left", pid=1))
+    for command, code in (("status", 3), ("reload", 69), ("recenter", 69)):
+        refused = say(command, "--set", "instance=lfet")
+        assert (refused.code, refused.out) == (code, "")
+        assert "no mocapd of yours named 'lfet' is running" in refused.err
+        assert "choose one that is: left" in refused.err
+    # a daemon keeps the name that it started with, whatever its file says since
+    file = tmp_path / "config.toml"
+    file.write_text("instance = 'renamed'\n")
+    assert say("reload", "--config", str(file)).code == 0
+
+
 def test_a_configuration_that_was_broken_since_hides_no_running_daemon(
     say: Callable[..., Outcome], serve: Serve, tmp_path: Path
 ) -> None:

@@ -16,6 +16,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from mocapd.config.effective import Effective, load_config
 from mocapd.config.runtime_folder import folders_to_look_in, runtime_folder
 from mocapd.config.sections import Config
 from mocapd.control import target_process
@@ -308,7 +309,7 @@ def test_a_service_is_known_to_run_by_those_who_may_not_look_into_its_folder() -
 
 
 def test_what_is_said_of_it() -> None:
-    refused = no_daemon_error(FoundDaemons(foreign=(Path("/run/mocapd"),)))
+    refused = no_daemon_error(FoundDaemons(foreign=(Path("/run/mocapd"),)), Config())
     assert str(refused) == "/run/mocapd: a daemon of another user is running -- ask with sudo"
 
 
@@ -319,6 +320,10 @@ def test_while_ones_own_daemon_hangs_no_other_one_is_commanded(
     found = FoundDaemons((other,), (tmp_path / "control-1.sock",))
     monkeypatch.setattr(target_process, "find_daemons", lambda _: found)
     with pytest.raises(UnavailableError, match=r"control-1\.sock: runs, but does not answer"):
-        target_daemon(Config(state_dir=tmp_path))
-    assert target_daemon(Config(state_dir=tmp_path, instance="hall")) is other
-    assert target_daemon(Config(state_dir=Path("/else"))) is other
+        target_daemon(of_flags(state_dir=str(tmp_path)))
+    assert target_daemon(of_flags(state_dir=str(tmp_path), instance="hall")) is other
+    assert target_daemon(of_flags(state_dir="/else")) is other
+
+
+def of_flags(**flags: str) -> Effective:
+    return load_config(flags, env={}, candidates=())

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from mocapd.app.daemon.main_loop import Signals
+    from mocapd.config.effective import Effective
     from mocapd.config.sections import Config
     from mocapd.web.runtime_file import Place, Running
     from mocapd.wizard.step_names import StepName
@@ -35,23 +36,27 @@ class PageOptions:
     browser: bool
 
 
-def calibrate_page(options: PageOptions, config: "Config") -> int:
+def calibrate_page(options: PageOptions, effective: "Effective") -> int:
     """Runs the setup until it is saved or a signal ends it; returns the exit code. Raises MocapdError."""
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs
 
+    config = effective.config
     set_up_logs(config.log_level)
     prepare_libraries(config.cache_dir)
 
     from mocapd.config.runtime_folder import runtime_folder
-    from mocapd.control.target_process import select_targets
+    from mocapd.control.target_process import other_name_error, select_targets
     from mocapd.web.runtime_file import SETUP, Place, begin_setup, running
 
     step = _step(options.step)
     folder = runtime_folder(config.state_dir)
     pages = () if options.demo else running(folder)
     if pages:
-        there = _the_one(select_targets(pages, config))
+        chosen = select_targets(pages, effective)
+        if not chosen:
+            raise other_name_error(effective.chosen_instance, pages)
+        there = _the_one(chosen)
         begin_setup(there.url, None if step is None else step.value)
         print(f"the running mocapd has the cameras; its page: {there.url}{SETUP}", flush=True)
         _browse(there.redirect, options.browser)

@@ -22,7 +22,7 @@ def reload(config: ConfigOption = None, settings: SetOption = None) -> None:
     """
     from mocapd.control.target_process import target_daemon
 
-    daemon = target_daemon(config_to_look_after(config, settings)[0].config)
+    daemon = target_daemon(config_to_look_after(config, settings)[0])
     done = daemon.reload()
     print(one_line(f"{daemon.instance}: taken up, {done.gap_s:.2f} s without a frame"))
     if done.waiting:

@@ -58,11 +58,11 @@ def status(
 
         raise typer.Exit(_print_all(link_of(zenoh_section(chosen.outputs), endpoint), as_json))
     found = find_daemons(chosen)
-    reports = [one.status for one in select_targets(found.daemons, chosen)]
+    reports = [one.status for one in select_targets(found.daemons, effective)]
     for report in reports:
         print(_as_json(report) if as_json else "\n".join(status_lines(report)))
     if not reports:
-        typer.echo(f"mocapd: {no_daemon_error(found)}", err=True)
+        typer.echo(f"mocapd: {no_daemon_error(found, chosen)}", err=True)
         raise typer.Exit(UNKNOWN if found.silent or found.foreign else NOT_RUNNING)
     if error is not None:
         typer.echo(f"mocapd: the next start or reload will not do: {error}", err=True)
