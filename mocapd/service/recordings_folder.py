@@ -1,12 +1,13 @@
 """The page's folder of recordings, and the recording in progress."""
 
+import logging
 import os
 import re
 import subprocess
 import threading
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,14 +16,24 @@ from typing import Annotated, BinaryIO
 import msgspec
 from msgspec import Meta
 
-from mocapd.boundary.files import is_absent, is_file, read_text
+from mocapd.boundary.files import MissingError, is_absent, is_file, read_text
 from mocapd.boundary.folders import private_folder
 from mocapd.boundary.listing import shown_in
 from mocapd.boundary.parsing import decode_json
 from mocapd.child_process import child_command
-from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError, mend_of
+from mocapd.errors import (
+    CannotCreateError,
+    InputError,
+    MalformedError,
+    MocapdError,
+    UnavailableError,
+    mend_of,
+)
+from mocapd.quarantine import quarantine
 from mocapd.service.body_recorder import BodyRecorder
 from mocapd.whole_file import whole_file
+
+_log = logging.getLogger(__name__)
 
 MOST_LISTED = 200
 FORMATS = ("bvh", "glb", "vrma", "csv", "trc", "c3d")
@@ -115,9 +126,16 @@ class Recordings:
     close = stop
 
     def note(self, id_: str, name: str, notes: str) -> None:
-        """Writes name and notes of a recording. Raises InputError for an unknown one, CannotCreateError."""
+        """Writes name and notes of a recording; quarantines an unreadable note. Raises InputError for an unknown one,
+        CannotCreateError."""
         self.file(id_)
-        before = self._read(id_)
+        try:
+            before = self._stored(id_)
+        except MissingError:
+            before = Note()
+        except (InputError, MalformedError) as error:
+            self._quarantine(id_, error)
+            before = Note()
         self._write(id_, msgspec.structs.replace(before, name=name, notes=notes))
 
     def list(self) -> RecordingList:
@@ -181,22 +199,40 @@ class Recordings:
     def _read(self, id_: str) -> Note:
         """The note; empty without a readable file, as the recording stays usable."""
         try:
-            text = read_text(self.folder / f"{id_}.json", _MOST_NOTE_BYTES)
-            return decode_json(text.encode(), Note)
+            return self._stored(id_)
         except (InputError, MalformedError):
             return Note()
 
+    def _stored(self, id_: str) -> Note:
+        """Raises MissingError, InputError or MalformedError."""
+        return decode_json(read_text(self._note_path(id_), _MOST_NOTE_BYTES).encode(), Note)
+
+    def _quarantine(self, id_: str, error: MocapdError) -> None:
+        """Raises CannotCreateError."""
+        path = self._note_path(id_)
+        with _creating(path):
+            _log.warning(
+                "%s cannot be used (%s), and is now %s", path, error.what, quarantine(path)
+            )
+
     def _write(self, id_: str, note: Note) -> None:
-        path = self.folder / f"{id_}.json"
-        try:
-            with whole_file(path, private=True) as partial:
-                partial.write_bytes(msgspec.json.encode(note))
-        except OSError as error:
-            raise CannotCreateError(
-                f"cannot be written ({error.strerror})",
-                str(path),
-                mend_of(error, "make room there"),
-            ) from None
+        path = self._note_path(id_)
+        with _creating(path), whole_file(path, private=True) as partial:
+            partial.write_bytes(msgspec.json.encode(note))
+
+    def _note_path(self, id_: str) -> Path:
+        return self.folder / f"{id_}.json"
+
+
+@contextmanager
+def _creating(path: Path) -> Iterator[None]:
+    """Raises CannotCreateError for an OSError."""
+    try:
+        yield
+    except OSError as error:
+        raise CannotCreateError(
+            f"cannot be written ({error.strerror})", str(path), mend_of(error, "make room there")
+        ) from None
 
 
 def _exported(path: Path, out: Path) -> BinaryIO:

@@ -89,6 +89,21 @@ def test_name_and_notes_are_kept_and_name_the_download(host: TinyHost, server: W
     assert 'filename="Serve-no.-3.mcap"' in answer.headers["content-disposition"]
 
 
+def test_a_note_that_cannot_be_read_is_not_overwritten(
+    host: TinyHost, server: WebServer, tmp_path: Path
+) -> None:
+    one = recorded(host, server)
+    stored = tmp_path / "recordings" / f"{one['id']}.json"
+    by_hand = '{"name": "Serve", "notes": "left foot first",}'
+    stored.write_text(by_hand)
+    (told,) = posted(
+        server, "/recordings", {"verb": "note", "id": one["id"], "name": "Volley"}
+    ).json()["recordings"]
+    assert told["name"] == "Volley"
+    (kept,) = stored.parent.glob("*.corrupt-*")
+    assert kept.read_text() == by_hand
+
+
 def test_it_is_exported_from_the_page(host: TinyHost, server: WebServer) -> None:
     one = recorded(host, server)
     answer = get(server, f"/recordings/{one['id']}/csv", token=token_of(server))
