@@ -71,8 +71,9 @@ def test_one_may_begin_in_the_second_of_another(host: TinyHost) -> None:
     """Also where the clock was set back: here by ten minutes, in each second of which one was begun."""
     assert host.made is not None
     host.made.folder.mkdir()
+    begin_s = time.time()
     for second in range(600):
-        name = time.strftime("%Y%m%d-%H%M%S", time.localtime(time.time() + second))
+        name = time.strftime("%Y%m%d-%H%M%S", time.localtime(begin_s + second))
         (host.made.folder / f"{name}.mcap").touch()
     host.made.start()
     host.made.stop()
