@@ -19,7 +19,7 @@ from mocapd.outputs.mcap.recording_reader import RecordingReader
 from mocapd.outputs.mcap.recording_writer import RecordingParams, RecordingWriter
 from mocapd.outputs.messages import RestSkeleton
 from mocapd.outputs.wire import SkeletonFrame
-from tests.cli.mocapd_process import start
+from tests.cli.mocapd_process import mocapd_here, start
 from tests.outputs.frames import eventually, free_port
 from tests.outputs.recorded import cameras, frames, rest
 from tests.outputs.zenoh_pair import Running, running_sink
@@ -106,6 +106,17 @@ def test_ctrl_c_ends_it_in_order(tmp_path: Path, clean_env: dict[str, str]) -> N
     file = McapFile(path)
     assert list(file.items(lambda _topic, schema: schema.endswith("PackedSkeleton.v1")))
     assert file.ending == ""
+
+
+def test_a_recording_without_a_frame_is_an_error(
+    tmp_path: Path, clean_env: dict[str, str]
+) -> None:
+    with running_sink() as running:
+        words = ("record", tmp_path / "a.mcap", "--seconds", "0.2", "--endpoint", running.endpoint)
+        done = mocapd_here(clean_env, *words)
+    assert "0 frames" in done.err
+    assert "no frame came, so nothing is recorded -- see `mocapd status`" in done.err
+    assert done.code == UnavailableError.exit_code
 
 
 def test_durations() -> None:

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from mocapd.cli.options import ConfigOption, ForceOption, SetOption, effective_config
+from mocapd.errors import UnavailableError
 
 
 def add_to(app: typer.Typer) -> None:
@@ -94,3 +95,7 @@ def record(
         f"{writer.bytes / 1e6:.1f} MB",
         err=True,
     )
+    if not (writer.frames or writer.pictures):
+        raise UnavailableError(
+            "no frame came, so nothing is recorded", str(path), "see `mocapd status`"
+        )
