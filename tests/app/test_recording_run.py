@@ -108,9 +108,7 @@ def test_ctrl_c_ends_it_in_order(tmp_path: Path, clean_env: dict[str, str]) -> N
     assert file.ending == ""
 
 
-def test_a_recording_without_a_frame_is_an_error(
-    tmp_path: Path, clean_env: dict[str, str]
-) -> None:
+def test_a_recording_without_a_frame_is_an_error(tmp_path: Path, clean_env: dict[str, str]) -> None:
     with running_sink() as running:
         words = ("record", tmp_path / "a.mcap", "--seconds", "0.2", "--endpoint", running.endpoint)
         done = mocapd_here(clean_env, *words)

@@ -10,6 +10,7 @@ from mocapd.clock import NS_PER_S, monotonic_ns, nanoseconds
 from mocapd.geometry.nominal_rig import nominal_rig
 from mocapd.outputs.base import Sink, SinkStatus
 from mocapd.outputs.from_rig import calibration_info
+from mocapd.outputs.osc.osc_sink import NO_RECEIVER, SENDING
 from mocapd.service.publisher import Publisher
 
 RATE_HZ = 60.0
@@ -19,6 +20,10 @@ CAMERA_PX = (640, 480)
 FEWEST = 3  # frames; with fewer a refusal may go unnoticed
 NOBODY_LISTENS = 1  # exit code
 SAY_EVERY_NS = NS_PER_S
+_REASONS = {
+    NO_RECEIVER: "its port refused the frames",
+    SENDING: "whether anybody listens there is not told",
+}
 
 
 def send_test(sink: Sink, instance: str, duration_s: float) -> int:
@@ -58,9 +63,15 @@ def is_heard(status: SinkStatus, halfway: SinkStatus | None) -> bool:
 
 
 def outcome(status: SinkStatus, heard: bool) -> str:
-    """One line for people."""
-    if not heard:
-        return f"nobody listens ({status.detail})"
-    if status.listeners < 0:
-        return f"{status.detail}; whether anybody listens there is not told"
-    return status.detail
+    """One line for people: of each destination how its state is known, or that it is not."""
+    detail = "; ".join(map(_explained, status.detail.split("; ")))
+    if heard:
+        return detail
+    return f"nobody {'listens' if status.listeners == 0 else 'is known to listen'} ({detail})"
+
+
+def _explained(destination: str) -> str:
+    for words, reason in _REASONS.items():
+        if destination.startswith(words):
+            return f"{destination} ({reason})"
+    return destination

@@ -14,6 +14,8 @@ from mocapd.outputs.osc.osc_frame import FrameBundles, Shape, shape_of
 from mocapd.outputs.wire import SkeletonFrame
 
 KEY = "osc.destinations"
+NO_RECEIVER = "no receiver"  # of a destination whose port refuses
+SENDING = "sending to"  # another machine, which need not refuse
 MAX_LAYOUTS = 32  # cached bundle layouts; cameras and tracking states come and go
 
 
@@ -98,7 +100,7 @@ class Destination:
     def _refuse(self, number: int) -> None:
         self.refused += 1
         self._in_a_row = 0
-        self._trouble = "no receiver" if number == errno.ECONNREFUSED else os.strerror(number)
+        self._trouble = NO_RECEIVER if number == errno.ECONNREFUSED else os.strerror(number)
 
     @property
     def is_heard(self) -> bool:
@@ -110,19 +112,20 @@ class Destination:
         """One line for people."""
         if not self.is_heard:
             return f"{self._trouble} on {self.text}"
-        return f"receiver on {self.text}" if self.is_local else f"sending to {self.text}"
+        return f"receiver on {self.text}" if self.is_local else f"{SENDING} {self.text}"
 
     def close(self) -> None:
         self._socket.close()
 
 
 def status_of(destinations: Sequence[Destination]) -> SinkStatus:
-    """The sum over all destinations; `listeners` is -1 when all are on other machines."""
-    local = [d for d in destinations if d.is_local]
+    """The sum over all destinations; `listeners` is -1 if none on this machine listens and some are on others."""
+    heard = sum(d.is_heard for d in destinations if d.is_local)
+    is_known = heard or all(d.is_local for d in destinations)
     return SinkStatus(
         sent=sum(d.sent for d in destinations),
         refused=sum(d.refused for d in destinations),
-        listeners=sum(d.is_heard for d in local) if local or not destinations else -1,
+        listeners=heard if is_known else -1,
         detail="; ".join(d.detail for d in destinations) or "closed",
     )
 

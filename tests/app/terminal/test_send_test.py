@@ -14,7 +14,7 @@ import typer
 import zenoh
 
 from mocapd.app.terminal import logs
-from mocapd.app.terminal.send_test_run import is_heard
+from mocapd.app.terminal.send_test_run import is_heard, outcome
 from mocapd.app.terminal.waving_person import LOOP, waving_person
 from mocapd.body.shape import mean_shape
 from mocapd.body.skeleton import INDEX
@@ -24,6 +24,7 @@ from mocapd.errors import UnavailableError, UsageError
 from mocapd.outputs import output_table, wire
 from mocapd.outputs.address_override import resolve_host
 from mocapd.outputs.base import SinkStatus
+from mocapd.outputs.osc.osc_sink import Destination, status_of
 from mocapd.outputs.output_table import (
     OUTPUTS,
     OscSection,
@@ -136,6 +137,32 @@ def test_the_frames_of_several_destinations_are_counted_together(
     assert sent == wanted
 
 
+def test_each_destination_says_whether_it_got_it_and_how_that_is_known(
+    code_of: Command,
+    listening: socket.socket,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    here = f"127.0.0.1:{listening.getsockname()[1]}"
+    closed = f"127.0.0.1:{free_port(socket.SOCK_DGRAM)}"
+    refusing = f"no receiver on {closed} (its port refused the frames)"
+    monkeypatch.setenv("MOCAPD_OSC_DESTINATIONS", f'["{here}", "{closed}"]')
+    assert code_of(output="osc") == 0
+    assert f": receiver on {here}; {refusing}\n" in capsys.readouterr().out
+    destinations = Destination(closed), Destination(here)
+    destinations[1].is_local = False
+    for _ in range(3):
+        for destination in destinations:
+            destination.send([bytearray(b"x")])
+    status = status_of(destinations)
+    assert status.listeners == -1, "another machine is not nobody"
+    assert outcome(status, heard=False) == (
+        f"nobody is known to listen ({refusing}; sending to {here} (whether anybody listens there is not told))"
+    )
+    for destination in destinations:
+        destination.close()
+
+
 def test_a_subscriber_gets_it_over_zenoh(code_of: Command) -> None:
     """At a router, which is there before."""
     port = free_port()
@@ -179,7 +206,7 @@ def test_an_output_that_is_new_in_the_table_can_be_tried(
     )
     assert code_of(output="new", port=39600) == 0
     assert seen == [Section(("127.0.0.1:39600",))]
-    assert "sending to it; whether anybody listens there is not told" in capsys.readouterr().out
+    assert "sending to it (whether anybody listens there is not told)" in capsys.readouterr().out
 
 
 def test_what_cannot_be_is_a_named_error(code_of: Command, monkeypatch: pytest.MonkeyPatch) -> None:
