@@ -196,6 +196,19 @@ def judged(tmp_path: Path, slowness: Slowness | None) -> list[Problem]:
     return list(step.view().problems)
 
 
+def test_an_empty_room_that_takes_longer_leaves_the_bar_full(tmp_path: Path) -> None:
+    context = FakeContext(tmp_path, full_draft())
+    step = check_step(context)
+    assert context.draft.rig is not None
+    step._tracking = LosingTracking(context.draft.rig, None)  # type: ignore[assignment]
+    step._phase = Phase.EMPTY
+    for _ in range(200):
+        step.tick(context.now_ns)
+        context.now_ns += TICK_NS
+    assert step.view().details["phase"] == "empty", "it has published no frame"
+    assert step.view().progress == 1.0
+
+
 def test_usb_is_blamed_for_what_webcams_lose_and_a_slow_machine_where_it_is_slow(
     tmp_path: Path,
 ) -> None:

@@ -152,7 +152,7 @@ class CheckStep:
         return StepView(
             state,
             sentence,
-            progress,
+            min(progress, 1.0),  # the empty room may take longer
             of_cameras + self._problems,
             details={
                 "phase": self._phase.value,
@@ -282,7 +282,7 @@ class CheckStep:
             return StepState.WAITING, "Come back, stand upright, and face the cameras.", 0.0
         if self._phase is Phase.MOVING:
             sentence = "Walk about and move your arms until the bar is full."
-            share = min(elapsed_s / MOVING_S, len(self._measures) / LEAST_MEASURES, 1.0)
+            share = min(elapsed_s / MOVING_S, len(self._measures) / LEAST_MEASURES)
             return StepState.WAITING, sentence, share
         if self._saved:
             return StepState.DONE, "Saved. You may close this page.", 1.0
