@@ -39,11 +39,16 @@ def bench_command(
     watched: Annotated[
         bool, typer.Option("--watched", help="With --live: a client has the daemon's page open.")
     ] = False,
-    seconds: Annotated[float, typer.Option(help="How long --live runs [s].", min=1.0)] = 60.0,
+    seconds: Annotated[
+        float, typer.Option(help="How long --live runs [s].", min=1.0, max=86_400.0)
+    ] = 60.0,
     endurance: Annotated[
         float | None,
         typer.Option(
-            help="Repeat the input as fast as possible for this long [min].", metavar="MIN"
+            help="Repeat the input as fast as possible for this long [min].",
+            metavar="MIN",
+            min=0.0,
+            max=10_000.0,
         ),
     ] = None,
     recording: Annotated[
