@@ -138,12 +138,12 @@ class CameraNode:
     def addresses(self) -> tuple[str, ...]:
         """Addresses for `source` in the daemon's configuration; the user completes the host, which the node may not know."""
         endpoint = (*self._zenoh.connect, *zenoh_config.listen_endpoints(self._zenoh))[0]
-        protocol, _, place = endpoint.partition("/")
+        protocol, _, place = zenoh_config.without_options(endpoint).partition("/")
         scheme = "zenohs" if protocol in zenoh_config.ENCRYPTED else "zenoh"
         login = (
             f"{self._params.paired_user or 'USER'}:PASSWORD@" if self._zenoh.password_file else ""
         )
-        host, _, port = place.partition("#")[0].rpartition(":")
+        host, _, port = place.rpartition(":")
         if host in ("0.0.0.0", "[::]"):
             host = "THIS_MACHINE"
         return tuple(

@@ -16,9 +16,13 @@ from mocapd.capture.remote.remote_link import RemoteLink
 from mocapd.capture.remote.remote_source import RemoteSource
 from mocapd.capture.simulated.sim import SimSource
 from mocapd.clock import monotonic_ns
+from mocapd.config.node_params import Params
 from mocapd.errors import CameraLost, ConfigError, UnavailableError
 from mocapd.node.network_emulation import Imperfections
+from mocapd.node.node_service import CameraNode
+from mocapd.outputs.zenoh import zenoh_config
 from mocapd.pipeline.latest import Latest
+from mocapd.session.camera_inputs import CameraInput
 from mocapd.types import Frame
 from tests.attacks.node_kinds import KINDS
 from tests.attacks.rogue_node import RogueNode
@@ -203,6 +207,14 @@ def test_cameras_that_no_daemon_could_tell_apart_are_refused(
         running_node(*(Pluggable(name) for name in names)),
     ):
         pass
+
+
+@pytest.mark.parametrize("options", ["#iface=lo", "?rel=1", "?rel=1#iface=lo"])
+def test_an_address_has_no_options_of_the_nodes_own_endpoint(options: str) -> None:
+    camera = CameraInput(Pluggable("cam0"), "/dev/video0")
+    own = zenoh_config.Params(listen=(f"tcp/127.0.0.1:7447{options}",))
+    (address,) = CameraNode("attic", own, Params(), [camera]).addresses()
+    assert address == "zenoh://127.0.0.1:7447/attic/cam0"
 
 
 def test_a_reader_is_woken_by_close() -> None:
