@@ -204,6 +204,7 @@ def told_in_another_order() -> dict[str, Stream]:
         "started anew": at(0.0, datagrams(later(first, 1000, **same_ns))) + at(0.1, datagrams(anew)),
         "recording in a loop": at(0.0, datagrams(later(first, 9))) + at(0.1, datagrams(later(first, 10, **same_ns))),
         "clock set back": at(0.0, datagrams(later(first, 9))) + at(2.0, golden),
+        "clock set back amid a frame": at(0.0, datagrams(later(first, 9))[:1]) + at(2.0, golden),
         "counted over the end": at(0.0, datagrams(later(first, end)))
         + at(0.1, datagrams(later(first, end + 1, **same_ns))),
         "second sender": at(0.0, golden) + at(0.1, other) + at(0.2, one),

@@ -106,6 +106,7 @@ def test_a_daemon_that_counts_anew_is_followed(played: Stream) -> None:
     assert played("started anew").persons["0"]["seq"] == 0
     assert played("recording in a loop").frames == 2
     assert played("clock set back").persons["0"]["seq"] == 0
+    assert played("clock set back amid a frame").persons["0"]["seq"] == 0
     assert played("counted over the end").persons["0"]["seq"] == 0
 
 

@@ -108,7 +108,7 @@ func _whole(messages: Array, now_s: float) -> Dictionary:
 	if part.size() == 0 or not _is_wanted(part, now_s):
 		return {}
 	var key: String = "%d %s" % [part["person"], part["instance"]]
-	var frame: Dictionary = _collected(key, part)
+	var frame: Dictionary = _collected(key, part, now_s)
 	if frame.size() == 0:
 		return {}
 	for place in range(1, messages.size()):
@@ -175,18 +175,19 @@ func _is_wanted(part: Dictionary, now_s: float) -> bool:
 	return _is_newer(part, before)
 
 
-# The frame that this part belongs to, begun now or before; empty where a newer one has been begun.
-func _collected(key: String, part: Dictionary) -> Dictionary:
+# The frame that this part belongs to, begun now or before; empty where a newer one was begun a moment ago.
+func _collected(key: String, part: Dictionary, now_s: float) -> Dictionary:
 	if _begun.has(key):
 		var before: Dictionary = _begun[key]
 		if before["seq"] == part["seq"] and before["capture_unix_ns"] == part["capture_unix_ns"]:
 			if before["parts"] == part["parts"] and before["joint_count"] == part["joint_count"]:
 				return before
-		elif not _is_newer(part, before):
+		elif now_s - before["heard_s"] <= silence_s and not _is_newer(part, before):
 			return {}
 		_complain(IN_PART, "frame %d" % before["seq"])
 	elif _begun.size() >= MAX_COLLECTED:
 		_begun.clear()
+	part["heard_s"] = now_s
 	_begun[key] = part
 	return part
 

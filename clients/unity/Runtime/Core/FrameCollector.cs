@@ -96,7 +96,7 @@ namespace Mocapd
                 return null;
             }
             string key = part.Frame.Person + " " + part.Frame.Instance;
-            PartialFrame collected = Collected(key, part);
+            PartialFrame collected = Collected(key, part, nowSeconds);
             if (collected == null)
             {
                 return null;
@@ -155,8 +155,8 @@ namespace Mocapd
             return IsNewer(frame, before);
         }
 
-        // The frame that this part belongs to, begun now or before; null where a newer one has been begun.
-        private PartialFrame Collected(string key, PartialFrame part)
+        // The frame that this part belongs to, begun now or before; null where a newer one was begun a moment ago.
+        private PartialFrame Collected(string key, PartialFrame part, double nowSeconds)
         {
             if (_begun.TryGetValue(key, out PartialFrame before))
             {
@@ -164,7 +164,8 @@ namespace Mocapd
                 {
                     return before;
                 }
-                if (!before.HasSameTimeAs(part) && !IsNewer(part.Frame, before.Frame))
+                bool isRecent = nowSeconds - before.Frame.HeardSeconds <= SilenceSeconds;
+                if (isRecent && !before.HasSameTimeAs(part) && !IsNewer(part.Frame, before.Frame))
                 {
                     return null;
                 }
@@ -174,6 +175,7 @@ namespace Mocapd
             {
                 _begun.Clear();
             }
+            part.Frame.HeardSeconds = nowSeconds;
             _begun[key] = part;
             return part;
         }
