@@ -14,7 +14,7 @@ import atexit
 import math
 import time
 from collections.abc import AsyncIterator, Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import Self
 
@@ -22,6 +22,7 @@ import zenoh
 
 from mocapd.bus.zenoh_answers import MOST_ANSWERS_BYTES, limited_answers
 from mocapd.bus.zenoh_calls import hold_session, zenoh_call
+from mocapd.errors import UnavailableError
 from mocapd.outputs import wire
 from mocapd.outputs.messages import Health, RestSkeleton, decode_health, decode_rest_skeleton
 from mocapd.outputs.prediction.pose_predictor import PosePredictor
@@ -106,13 +107,14 @@ class Body:
 class Client:
     """A connection that holds the newest body, for game loops that poll once per picture.
 
-    It reconnects when the daemon restarts. `close` is thread-safe; the rest is for one thread at a time.
+    It reconnects when the daemon restarts. `close` is thread-safe; the rest is for one thread at a time, and raises
+    UnavailableError after it.
     """
 
     def __init__(self, link: Link | None = None) -> None:
         """Connect. Raises UnavailableError when no mocapd is found in time."""
         link = link or Link()
-        self._opened = ExitStack()
+        self._opened, self._is_closed = ExitStack(), False
         self._session = self._opened.enter_context(connect(link))
         with zenoh_call():
             self._subscriber = self._opened.enter_context(
@@ -131,7 +133,7 @@ class Client:
 
     def poll(self) -> Body | None:
         """The newest unread body; None without one. Never waits."""
-        with zenoh_call():
+        with self._call():
             samples = self._waiting()
         return self._newest(samples)
 
@@ -164,7 +166,7 @@ class Client:
         first tracked person. It changes with a new calibration, and slightly while the daemon learns the body. Raises
         InputError for an answer of another version.
         """
-        with zenoh_call():
+        with self._call():
             samples = limited_answers(self._session, self._rest_key, timeout_s, MOST_ANSWERS_BYTES)
         for sample in samples:
             return decode_rest_skeleton(sample.payload.to_bytes(), str(sample.encoding))
@@ -173,7 +175,7 @@ class Client:
     def health(self) -> Health | None:
         """The daemon's last health message, sent about once a second; None before the first. `slowness` is one line
         while it is too slow for its cameras. Never waits. Raises InputError for a message of another version."""
-        with zenoh_call():
+        with self._call():
             samples = list(iter(self._healths.try_recv, None))
         if samples:
             newest = samples[-1]
@@ -182,16 +184,31 @@ class Client:
 
     def __iter__(self) -> Iterator[Body]:
         """Iterates over newest bodies; waits without limit, also while the daemon restarts."""
-        samples = iter(self._subscriber)
+        with self._call():
+            samples = iter(self._subscriber)
         while True:
-            with zenoh_call():
-                first = next(samples, None)
-                later = self._waiting() if first is not None else []
+            try:
+                with self._call():
+                    first = next(samples, None)
+                    later = self._waiting() if first is not None else []
+            except UnavailableError:  # closed between the two
+                return
             if first is None:
                 return
             body = self._newest([first, *later])
             assert body is not None
             yield body
+
+    @contextmanager
+    def _call(self) -> Iterator[None]:
+        """Context of a call into Zenoh. Raises UnavailableError after `close`."""
+        with zenoh_call():
+            try:
+                yield
+            except zenoh.ZError:
+                if not self._is_closed:
+                    raise
+                raise UnavailableError("this Client is closed", fix="make another one") from None
 
     def _waiting(self) -> list[zenoh.Sample]:
         """The queued samples, newest last."""
@@ -208,6 +225,7 @@ class Client:
     def close(self) -> None:
         """Disconnects; idempotent. Ends an iteration in another thread."""
         atexit.unregister(self.close)
+        self._is_closed = True
         with zenoh_call():
             self._opened.close()
 

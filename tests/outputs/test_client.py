@@ -215,6 +215,26 @@ def test_it_goes_on_when_the_daemon_comes_back() -> None:
     game.close()
 
 
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda game: game.poll(),
+        lambda game: game.wait(0.0),
+        lambda game: game.predict(),
+        lambda game: game.rest(),
+        lambda game: game.health(),
+        lambda game: next(iter(game)),
+    ],
+    ids=["poll", "wait", "predict", "rest", "health", "iter"],
+)
+def test_one_that_is_closed_says_so(use: Callable[[client.Client], object]) -> None:
+    with running_sink() as running:
+        game = client.Client(client.Link(running.endpoint))
+        game.close()
+        with pytest.raises(UnavailableError, match="this Client is closed"):
+            use(game)
+
+
 @pytest.mark.parametrize("timeout_s", [0.0, 0.3])
 def test_nothing_there_is_one_clear_line(timeout_s: float) -> None:
     endpoint = f"tcp/127.0.0.1:{free_port()}"
