@@ -15,6 +15,7 @@ from mocapd.types import Floats
 
 _FIELDS = ("times", "names", "joints", "visible")
 _RESTORE = "copy the capture again"
+_MOST_BYTES = 200_000_000  # of the unpacked fields: more than an hour at 60 Hz
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +43,7 @@ def load_truth(capture: Path) -> Truth:
         )
     light_change_s, clear_s = _events_s(capture / "info.json")
     try:
+        _check_size(path)
         with np.load(path, allow_pickle=False) as data:
             missing = [field for field in _FIELDS if field not in data.files]
             if missing:
@@ -54,7 +56,7 @@ def load_truth(capture: Path) -> Truth:
                 light_change_s=light_change_s,
                 clear_s=clear_s,
             )
-    except (OSError, ValueError, zipfile.BadZipFile, zlib.error) as error:
+    except (OSError, ValueError, MemoryError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError(f"cannot be read ({error})", str(path), _RESTORE) from None
     frames, joints = len(truth.times_s), len(truth.names)
     if truth.joints_m.shape != (frames, joints, 3) or truth.visible.shape != (frames,):
@@ -62,6 +64,14 @@ def load_truth(capture: Path) -> Truth:
     if not truth.visible.any():
         raise InputError("nobody is visible in this capture", str(path), "choose another one")
     return truth
+
+
+def _check_size(path: Path) -> None:
+    """Raises InputError for a small archive that unpacks to more than the memory, BadZipFile for none."""
+    with zipfile.ZipFile(path) as archive:
+        fields = [f for f in archive.infolist() if f.filename.removesuffix(".npy") in _FIELDS]
+    if sum(field.file_size for field in fields) > _MOST_BYTES:
+        raise InputError(f"unpacks to more than {_MOST_BYTES / 1e6:g} MB", str(path), _RESTORE)
 
 
 def _events_s(path: Path) -> tuple[float | None, float | None]:

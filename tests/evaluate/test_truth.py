@@ -1,6 +1,8 @@
 """Ground truth that is missing, damaged or of another kind gives one clear line."""
 
+import io
 import json
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +57,36 @@ def test_a_truth_cut_short_is_named(tmp_path: Path) -> None:
     path = write_truth(tmp_path) / "truth.npz"
     path.write_bytes(path.read_bytes()[:2000])
     with pytest.raises(InputError, match=r"truth\.npz: cannot be read"):
+        load_truth(tmp_path)
+
+
+def npy_header(numbers: int) -> bytes:
+    header = io.BytesIO()
+    fields = {"descr": "<f8", "fortran_order": False, "shape": (numbers,)}
+    np.lib.format.write_array_header_1_0(header, fields)
+    return header.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("archive", "what"),
+    [
+        ({}, "cannot be read"),
+        ({"times": npy_header(10**13)}, "cannot be read"),
+        ({"times": npy_header(2**25) + bytes(2**28)}, "unpacks to more than 200 MB"),
+    ],
+    ids=["no archive", "claims much", "holds much"],
+)
+def test_a_truth_of_another_size_is_named(
+    archive: dict[str, bytes], what: str, tmp_path: Path
+) -> None:
+    path = write_truth(tmp_path) / "truth.npz"
+    path.write_bytes(npy_header(0))
+    if archive:
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as packed:
+            for name in ("times", "names", "joints", "visible"):
+                packed.writestr(f"{name}.npy", archive.get(name, npy_header(0)))
+        assert path.stat().st_size < 2_000_000
+    with pytest.raises(InputError, match=rf"truth\.npz: {what}"):
         load_truth(tmp_path)
 
 
