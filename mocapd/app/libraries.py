@@ -26,11 +26,13 @@ def use_cache_dir(cache_dir: Path) -> None:
     write to is refused. Raises CannotCreateError or PermissionDeniedError.
     """
     _own_folder(cache_dir)
-    package = Path(mocapd.__file__).parent
-    if not os.access(package, os.W_OK):
+    numba: Path | str = (
+        ""  # beside the kernels; else a .numba_config.yaml of the working directory could name a folder
+    )
+    if not os.access(Path(mocapd.__file__).parent, os.W_OK):
         numba = cache_dir / "numba"
         _own_folder(numba)
-        os.environ.setdefault("NUMBA_CACHE_DIR", str(numba))
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(numba))
 
 
 def _own_folder(path: Path) -> None:

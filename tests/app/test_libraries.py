@@ -39,6 +39,26 @@ def test_a_cache_that_others_may_write_is_refused(tmp_path: Path, shared: str) -
     assert "NUMBA_CACHE_DIR" not in os.environ
 
 
+def test_the_working_directory_does_not_say_where_code_is_kept(
+    tmp_path: Path, clean_env: dict[str, str]
+) -> None:
+    """numba reads its settings from there where PyYAML is installed: another user's folder may hold another user's code."""
+    (tmp_path / "yaml.py").write_text("def safe_load(file): return {'cache_dir': file.read()}")
+    (tmp_path / ".numba_config.yaml").write_text("/elsewhere")
+    code = f"""
+import os; os.chdir({str(tmp_path)!r})
+from mocapd.app.libraries import use_cache_dir
+from pathlib import Path
+use_cache_dir(Path({str(tmp_path / "cache")!r}))
+from numba.core import config
+print(config._HAVE_YAML, repr(config.CACHE_DIR))
+"""
+    env = clean_env | {"PYTHONPATH": str(tmp_path)}
+    told = run_code(code, env)[0]
+    assert told.startswith("True")
+    assert "/elsewhere" not in told
+
+
 def test_a_path_that_cannot_be_is_named(tmp_path: Path) -> None:
     with pytest.raises(CannotCreateError, match="cannot be written"):
         use_cache_dir(tmp_path / ("x" * 300))
