@@ -80,6 +80,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
     from mocapd.app.daemon.main_loop import END_S, LoopHook, Signals, end_despite_work, run_daemon
     from mocapd.app.daemon.notifier import Notifier
     from mocapd.app.daemon.session_change import SessionChange
+    from mocapd.app.daemon.shared_state import SharedState
     from mocapd.app.daemon.supervision import Supervision
     from mocapd.capture.decoder_warnings import DecoderWarnings
     from mocapd.config.runtime_folder import runtime_folder
@@ -116,6 +117,7 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
                     service.preparing = text
 
                 hooks: list[LoopHook] = [change, control, Supervision(notifier)]
+                hooks.append(SharedState(config))
                 if first.is_early:
                     hooks.append(EarlyStart(first.preparation, change, tell))
                 code = run_daemon(service, signals, hint, hooks, control.what_is_prepared)
