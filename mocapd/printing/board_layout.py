@@ -122,10 +122,15 @@ def layout_behind(front: Layout) -> Layout:
 
 
 def _crosses(board: Rect) -> dict[str, Size]:
+    """Beside the rulers, also where these are longer than the board."""
     x, y, width, height = board
-    left, right = x - _CROSS_MM, x + width + _CROSS_MM
-    below, above = y - _CROSS_MM, y + height + _CROSS_MM
-    return {"A": (left, above), "B": (right, above), "C": (right, below), "D": (left, below)}
+    right, above = x + width + _CROSS_MM, y + height + _CROSS_MM
+    return {
+        "A": (x + _CROSS_MM, above),
+        "B": (right, above),
+        "C": (right, y + _CROSS_MM),
+        "D": (x - _CROSS_MM, y - _CROSS_MM),
+    }
 
 
 def _area(page_mm: Size, two_sided: bool) -> Rect:

@@ -146,14 +146,20 @@ def _write_on_back(canvas: Canvas, board: BoardSpec, layout: Layout, title: str)
 
 
 def _write_title(canvas: Canvas, board: BoardSpec, layout: Layout, title: str, remark: str) -> None:
-    """To the right of the ruler."""
+    """To the right of the ruler, up to a cross."""
     x, y = layout.ruler_mm
     left = x + RULER_MM + 8.0
-    write_text(canvas, (left, y + 5.0), title, 3.4, font=BOLD)
+    beside = [
+        cx - _ARM_MM - 1.0
+        for cx, cy in layout.crosses.values()
+        if cx > left and cy < layout.board[1]
+    ]
+    room_mm = min([layout.page_mm[0] - EDGE_MM, *beside]) - left
+    em_mm = _fitting_mm(title, BOLD, 3.4, room_mm)
+    write_text(canvas, (left, y + 5.0), title, em_mm, font=BOLD)
     squares = f"{board.columns} x {board.rows} squares of {board.square_m * 1000:g} mm"
     markers = f"markers of {board.marker_m * 1000:g} mm, {board.dictionary}"
     lines = [f"{squares}, {markers}", remark]
-    room_mm = layout.page_mm[0] - EDGE_MM - left
     em_mm = min(_fitting_mm(line, "Helvetica", 2.4, room_mm) for line in lines)
     write_text(canvas, (left, y + 1.4), lines, em_mm)
 

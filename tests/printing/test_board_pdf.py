@@ -148,6 +148,25 @@ def test_back_to_back_every_corner_of_two_sides_has_one_place(
         assert (sheet.pixels[~inside] == 255).all()
 
 
+@pytest.mark.parametrize(
+    ("columns", "rows", "square_m", "inverted"),
+    [(5, 7, 0.014, False), (9, 3, 0.02, False), (3, 12, 0.01, True), (4, 5, 0.03, True), (5, 7, None, True)],
+)  # fmt: skip
+def test_no_ruler_and_no_word_lies_under_a_cross(
+    columns: int, rows: int, square_m: float | None, inverted: bool
+) -> None:
+    board = fitted_board(
+        "A4", columns, rows, "DICT_4X4_1000", inverted=inverted, two_sided=True, square_m=square_m
+    )
+    pdf, layout = board_pdf(board, "A4"), layout_of(board, "A4")
+    for page, sides in enumerate((layout, layout_behind(layout))):
+        sheet = printed(pdf, page, PX_PER_MM)
+        for letter, (x, y) in sides.crosses.items():
+            # the quarters without the letter
+            for corner in ((x - 3.4, y + 0.4), (x - 3.4, y - 3.4), (x + 0.4, y - 3.4)):
+                assert (sheet.part(corner, (3.0, 3.0)) == 255).all(), (page, letter)
+
+
 def test_two_sides_say_how_they_are_glued() -> None:
     board = fitted_board("A4", 5, 7, "DICT_4X4_1000", two_sided=True)
     pdf = board_pdf(board, "A4")
