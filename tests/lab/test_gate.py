@@ -7,9 +7,18 @@ import pytest
 
 from lab.gate.figures import above, acceleration_error_mm
 from lab.gate.gate_file import SCHEMA, GateFile, GateRow, read_gate, write_gate
+from lab.gate.measuring import measure
 from lab.gate.report import report
+from lab.gate.sets import cases_of
 from lab.gate.verdict import failures, row_changes, set_changes
+from mocapd.body.shape import BodyShape, mean_shape
 from mocapd.errors import InputError
+from mocapd.session.tracker_setup import ReadyTracker
+from mocapd.trackers.canned.tracker import CannedTracker
+from mocapd.tracking.base import Track
+from mocapd.types import FrameSet
+from tests.cli.small_capture import write_capture, write_video
+from tests.evaluate.tracks import moving_truth
 
 
 def file_of(commit: str, loop_ms: float = 10.0, **runs: list[float]) -> GateFile:
@@ -86,3 +95,38 @@ def test_acceleration_is_compared_only_over_frames_that_follow_each_other() -> N
     apart_m[:, 0, 0] = [0.0, 0.001, 0.0, 9.0, 9.0]  # a jump where frames are missing
     rows = np.array([0, 1, 2, 10, 11])
     assert acceleration_error_mm(apart_m, rows) == pytest.approx(2.0)
+
+
+class Watched(CannedTracker):
+    """Keeps the times of what it was shown."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.times_ns: list[int] = []
+
+    def step(self, frames: FrameSet, shape: BodyShape) -> Track:
+        self.times_ns.append(frames.t_ns)
+        return super().step(frames, shape)
+
+
+@pytest.mark.kernels
+def test_at_half_rate_every_second_picture_is_shown_and_only_these_are_scored(
+    tmp_path: Path,
+) -> None:
+    folder, truth = write_capture(tmp_path / "one"), moving_truth()
+    for name in ("cam0", "cam1"):
+        write_video(folder / f"{name}.mp4", frames=len(truth.times_s))
+    np.savez(
+        folder / "truth.npz",
+        times=truth.times_s, names=np.array(truth.names), joints=truth.joints_m, visible=truth.visible,
+    )  # fmt: skip
+    shown, coverage = {}, {}
+    for one in cases_of(("dev", "half_rate"), tmp_path, tmp_path, tmp_path, lambda *_: None):
+        tracker = Watched()
+        ready = ReadyTracker(tracker, mean_shape(1.7))
+        row = measure(one, lambda _, ready=ready: ready, 1, 1.7, lambda _: None)  # type: ignore[misc]
+        assert (row.set_name, row.name) == (one.set_name, "one")
+        shown[one.set_name], coverage[one.set_name] = tracker.times_ns, row.runs["coverage"]
+    assert len(shown["dev"]) == len(truth.times_s)
+    assert shown["half_rate"] == shown["dev"][::2]
+    assert coverage == {"dev": [1.0], "half_rate": [1.0]}
