@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from mocapd.app.daemon.daemon_pictures import DaemonPictures
+from mocapd.app.daemon.daemon_pictures import DaemonPictures, RecordingHeader
 from mocapd.capture.kinds.source_kinds import open_origin
 from mocapd.config.web_params import Params
 from mocapd.errors import UnavailableError
@@ -115,6 +115,24 @@ def test_another_sessions_cameras_are_recorded_on(
             return writer.pictures == 1
 
         assert eventually(one_there)
+
+
+def test_a_disk_slower_than_the_cameras_does_not_hold_the_recorder(tmp_path: Path) -> None:
+    """Else it would look neither at its end nor at Ctrl-C."""
+    pictures = DaemonPictures(tmp_path, "pc")
+    one = RecordingHeader(camera="cam0"), b""
+
+    class SlowDisk(RecordingWriter):
+        def picture(self, camera: str, seq: int, unix_ns: int, jpeg: bytes) -> None:
+            self.pictures += 1
+            if self.pictures < 100:
+                pictures._waiting.put(one)  # the next one comes meanwhile
+
+    with SlowDisk(tmp_path / "a.mcap", RecordingParams(), 0) as writer:
+        for _ in range(3):
+            pictures._waiting.put(one)
+        pictures.drain(writer, 0)
+        assert writer.pictures == 3
 
 
 def test_a_daemon_without_page_is_named(folder: Path) -> None:

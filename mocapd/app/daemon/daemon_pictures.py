@@ -80,12 +80,11 @@ class DaemonPictures:
         return self._dropped_here + self._dropped_there
 
     def drain(self, writer: RecordingWriter, unix_ns: int) -> None:
-        """Writes the received items; never waits. unix_ns: now, for files."""
-        while True:
-            try:
-                header, data = self._waiting.get_nowait()
-            except queue.Empty:
-                return
+        """Writes the items received so far; never waits. unix_ns: now, for files."""
+        for _ in range(
+            self._waiting.qsize()
+        ):  # a slow disk never catches up with those that come meanwhile
+            header, data = self._waiting.get_nowait()
             if header.file:
                 writer.attach_file(McapAttachment(header.file, header.media_type, data), unix_ns)
             else:
