@@ -117,7 +117,8 @@ def run_with(read: "Callable[[], Effective]", hint: str = "") -> int:
                     service.preparing = text
 
                 hooks: list[LoopHook] = [change, control, Supervision(notifier)]
-                hooks.append(SharedState(config))
+                if page is not None:  # else it has no setup
+                    hooks.append(SharedState(config))
                 if first.is_early:
                     hooks.append(EarlyStart(first.preparation, change, tell))
                 code = run_daemon(service, signals, hint, hooks, control.what_is_prepared)
