@@ -37,7 +37,7 @@ class ProgressBars:
         self._console = Console(stderr=True)
         self._is_quiet = stderr_is_journal()
         self._bars = Progress(
-            TextColumn("{task.description}"),
+            TextColumn("{task.description}", markup=False),  # names of files may hold brackets
             BarColumn(),
             MofNCompleteColumn(),
             TimeElapsedColumn(),  # moves also while a single part takes long
@@ -80,7 +80,7 @@ class ProgressBars:
         if self._is_quiet or self._lines is not None or self._tasks:
             return
         if self._console.is_terminal:
-            self._console.print(what)
+            self._console.print(what, markup=False, highlight=False)
         else:
             self._lines = _Lines(what)
 
