@@ -7,6 +7,7 @@ in the Meta, or a line `name: words` of the section's docstring.
 
 import difflib
 import inspect
+import json
 import re
 import types
 from collections.abc import Callable, Iterator, Mapping
@@ -188,7 +189,7 @@ def as_toml(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str | Path):
-        return '"' + without_password(str(value)) + '"'
+        return json.dumps(without_password(str(value)), ensure_ascii=False)  # escaped as in TOML
     if isinstance(value, list | tuple):
         return "[" + ", ".join(as_toml(v) for v in value) + "]"
     if is_dataclass(value):

@@ -4,6 +4,7 @@ import math
 import os
 import subprocess
 import sys
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import Annotated, Any
 import pytest
 from msgspec import Meta
 
-from mocapd.config.config_keys import SectionTable, build, entry_keys, keys_of
+from mocapd.config.config_keys import SectionTable, as_toml, build, entry_keys, keys_of
 from mocapd.config.effective import Effective, load_config
 from mocapd.config.removed_keys import REMOVED
 from mocapd.config.sections import CameraSection
@@ -198,6 +199,11 @@ def test_the_error_of_a_list_has_an_example_as_it_is_typed(
     with pytest.raises(ConfigError) as caught:
         load_config({flag: text}, env={}, candidates=())
     assert caught.value.fix.endswith(f", such as {example}")
+
+
+@pytest.mark.parametrize("text", ['a "quoted" word', "back\\slash", "Küche", "two\nlines"])
+def test_text_is_shown_as_toml_reads_it(text: str) -> None:
+    assert tomllib.loads(f"v = {as_toml([text])}") == {"v": [text]}
 
 
 def test_the_error_of_a_list_in_a_file_has_an_example(file: Path) -> None:
