@@ -10,6 +10,7 @@ from mocapd.cli.options import (
     ConfigOption,
     SetOption,
     effective_config,
+    toml_string,
 )
 
 
@@ -57,7 +58,7 @@ def camera_node(
         cameras,
         capture,
         instance=name,
-        zenoh__listen=None if listen is None else f'["{listen}"]',
-        zenoh__connect=None if connect is None else f'["{connect}"]',
+        zenoh__listen=None if listen is None else f"[{toml_string(listen)}]",
+        zenoh__connect=None if connect is None else f"[{toml_string(connect)}]",
     )
     raise typer.Exit(run_camera_node(effective, imperfect))

@@ -132,13 +132,13 @@ def _camera(text: str) -> tuple[str, str]:
 def _camera_list(cameras: list[tuple[str, str]]) -> str:
     """As TOML, the format of a flag's value."""
     entries = (
-        f"{{id = {_toml_string(name)}, source = {_toml_string(source)}}}"
-        for name, source in cameras
+        f"{{id = {toml_string(name)}, source = {toml_string(source)}}}" for name, source in cameras
     )
     return f"[{', '.join(entries)}]"
 
 
-def _toml_string(text: str) -> str:
+def toml_string(text: str) -> str:
+    """The text in quotes, escaped."""
     import tomli_w
 
     return tomli_w.dumps({"v": text}).removeprefix("v = ").strip()

@@ -72,6 +72,12 @@ def test_output_to_a_full_disk(clean_env: dict[str, str], unbuffered: str) -> No
     assert_one_line(Outcome(done.returncode, "", done.stderr), 73, "No space left", "make room")
 
 
+def test_an_endpoint_with_quotes_is_named_as_it_was_given(clean_env: dict[str, str]) -> None:
+    endpoint = 'tcp/127.0.0.1:port#iface="lo"'
+    outcome = mocapd(clean_env, "camera-node", "--camera", "a=/dev/video9", "--listen", endpoint)
+    assert_one_line(outcome, 78, f"{endpoint!r} does not do", "protocol/address:port")
+
+
 def test_output_to_a_terminal_without_the_letters(clean_env: dict[str, str]) -> None:
     env = {**clean_env, "PYTHONIOENCODING": "ascii"}
     outcome = mocapd(env, "check-config", "--changed", "--set", "instance=Küche")
