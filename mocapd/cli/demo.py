@@ -46,13 +46,15 @@ def demo(
         return effective_config(config, settings, None, origin, **vrm_flags(vrm))
 
     watch = watch_command(read().config)
-    raise typer.Exit(run_with(read, f"in a second terminal: {watch}"))
+    raise typer.Exit(run_with(read, watch and f"in a second terminal: {watch}"))
 
 
 def watch_command(config: "Config") -> str:
-    """The command line that shows the stream of this configuration, for any terminal."""
+    """The command line that shows the stream of this configuration, for any terminal; empty without Zenoh."""
     from mocapd.outputs.output_table import ZenohSection, zenoh_section
 
+    if not zenoh_section(config.outputs).enabled:
+        return ""
     own = Path(sys.executable).parent / "mocapd"
     on_path = shutil.which("mocapd")
     name = "mocapd" if on_path and Path(on_path) == own else str(own)

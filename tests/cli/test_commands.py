@@ -155,3 +155,4 @@ def test_the_demo_prints_a_command_for_the_second_terminal() -> None:
     assert Path(command[0]).name == "mocapd"
     assert command[1:] == ["watch", "--set", "zenoh.port=7448"]
     assert shlex.split(watch_command(Config()))[1:] == ["watch"]
+    assert watch_command(Config(outputs={"zenoh": ZenohSection(enabled=False)})) == ""
