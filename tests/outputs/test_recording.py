@@ -100,6 +100,17 @@ def test_exactly_the_published_bytes_on_demand(tmp_path: Path) -> None:
     assert read == recorded
 
 
+def test_a_daemon_that_comes_back_with_another_format_is_recorded_on(tmp_path: Path) -> None:
+    """Its zenoh.format was changed."""
+    recorded = frames(0.4)
+    with RecordingWriter(tmp_path / "a.mcap", RecordingParams(exact=True), 0) as writer:
+        for frame in recorded[:10]:
+            writer.frame(frame, wire.encode_msgpack(frame), wire.MSGPACK_MIME)
+        for frame in recorded[10:]:
+            writer.frame(frame, wire.encode_json(frame), wire.JSON_MIME)
+    assert list(RecordingReader(tmp_path / "a.mcap").everything()) == recorded
+
+
 def test_joints_that_are_not_of_the_rest_skeleton_are_kept_as_published(tmp_path: Path) -> None:
     small = msgspec.structs.replace(whole_frame(), joints={"hips": whole_frame().joints["hips"]})
     far = msgspec.structs.replace(

@@ -80,7 +80,7 @@ class RecordingWriter:
         with self._writing():  # at once, so that even an early kill leaves a valid, empty recording
             self._mcap.start("", f"mocapd {mocapd.__version__}")
             self._file.flush()
-        self._channels: dict[tuple[str, str], int] = {}
+        self._channels: dict[tuple[str, str, str], int] = {}  # by topic, schema and encoding
         self._schemas: dict[str, int] = {}
         self._rests: dict[int, RestSkeleton] = {}
         self._newest_states: dict[tuple[str, str], RestSkeleton | CalibrationInfo] = {}
@@ -200,9 +200,9 @@ class RecordingWriter:
     def _add(
         self, topic: str, schema: str, encoding: str, data: bytes, unix_ns: int, seq: int = 0
     ) -> None:
-        channel = self._channels.get((topic, schema))
+        channel = self._channels.get((topic, schema, encoding))
         if channel is None:
-            channel = self._channels[topic, schema] = self._mcap.register_channel(
+            channel = self._channels[topic, schema, encoding] = self._mcap.register_channel(
                 topic, encoding, self._schema(schema)
             )
         log_ns = max(0, unix_ns)
