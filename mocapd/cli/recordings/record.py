@@ -51,7 +51,7 @@ def record(
 
     Includes the rest skeleton and the calibration; with --pictures also the cameras' pictures, from the daemon's
     page, and then only you can read the file. The daemon is not affected. After a crash at most the last second
-    is lost. Ctrl-C ends the recording.
+    is lost. Ctrl-C ends the recording. If no frame came, the exit code is 69.
 
     Example: mocapd record training.mcap --seconds 60
     """
