@@ -26,9 +26,8 @@ def use_cache_dir(cache_dir: Path) -> None:
     write to is refused. Raises CannotCreateError or PermissionDeniedError.
     """
     _own_folder(cache_dir)
-    numba: Path | str = (
-        ""  # beside the kernels; else a .numba_config.yaml of the working directory could name a folder
-    )
+    # empty: beside the kernels; unset, a .numba_config.yaml of the working directory would name a folder
+    numba: Path | str = ""
     if not os.access(Path(mocapd.__file__).parent, os.W_OK):
         numba = cache_dir / "numba"
         _own_folder(numba)

@@ -30,12 +30,11 @@ aligned, scaled or smoothed before. Half a second after the person comes in is l
 before one came in. *Jitter*: median second difference from frame to frame, as a ratio to that of the truth. *Step p99* and
 *step max*: motion of a joint from one frame to the next minus its true motion, the 99th percentile and the maximum of all
 joints and frames. *Believed*: joints with a confidence of 0.4 or more; *its RMS* is of them, *other RMS* of the others.
-*Angle*: mean error of the angles between the bones at
-neck, shoulders and elbows, or at the joints scored. *Back after*: how many frames after a lamp has gone out the RMS error of
-three frames in a row is under 6 cm again, 0 if it exceeds 6 cm in none of the first ten; or how many frames after the end of
-an occlusion it stays under 10 cm, 0 if it always does; `never`: not in this capture; `-`: neither event is in it.
-*Step [ms]*: median time that the tracker takes for one frame set, on a machine that may have been busy (use `mocapd bench`
-to measure speed).
+*Angle*: mean error of the angles between the bones at neck, shoulders and elbows, or at the joints scored. *Back after*: how
+many frames after a lamp has gone out the RMS error of three frames in a row is under 6 cm again, 0 if it exceeds 6 cm in none
+of the first ten; or how many frames after the end of an occlusion it stays under 10 cm, 0 if it always does; `never`: not in
+this capture; `-`: neither event is in it. *Step [ms]*: median time that the tracker takes for one frame set, on a machine
+that may have been busy (use `mocapd bench` to measure speed).
 """
 
 _RELIABILITY = """

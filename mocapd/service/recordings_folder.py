@@ -21,14 +21,7 @@ from mocapd.boundary.folders import private_folder
 from mocapd.boundary.listing import shown_in
 from mocapd.boundary.parsing import decode_json
 from mocapd.child_process import child_command
-from mocapd.errors import (
-    CannotCreateError,
-    InputError,
-    MalformedError,
-    MocapdError,
-    UnavailableError,
-    mend_of,
-)
+from mocapd.errors import CannotCreateError, InputError, UnavailableError, mend_of
 from mocapd.quarantine import quarantine
 from mocapd.service.body_recorder import BodyRecorder
 from mocapd.whole_file import whole_file
@@ -133,7 +126,7 @@ class Recordings:
             before = self._stored(id_)
         except MissingError:
             before = Note()
-        except (InputError, MalformedError) as error:
+        except InputError as error:
             self._quarantine(id_, error)
             before = Note()
         self._write(id_, msgspec.structs.replace(before, name=name, notes=notes))
@@ -200,14 +193,14 @@ class Recordings:
         """The note; empty without a readable file, as the recording stays usable."""
         try:
             return self._stored(id_)
-        except (InputError, MalformedError):
+        except InputError:
             return Note()
 
     def _stored(self, id_: str) -> Note:
-        """Raises MissingError, InputError or MalformedError."""
+        """Raises MissingError or InputError."""
         return decode_json(read_text(self._note_path(id_), _MOST_NOTE_BYTES).encode(), Note)
 
-    def _quarantine(self, id_: str, error: MocapdError) -> None:
+    def _quarantine(self, id_: str, error: InputError) -> None:
         """Raises CannotCreateError."""
         path = self._note_path(id_)
         with _creating(path):

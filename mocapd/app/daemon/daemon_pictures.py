@@ -81,9 +81,8 @@ class DaemonPictures:
 
     def drain(self, writer: RecordingWriter, unix_ns: int) -> None:
         """Writes the items received so far; never waits. unix_ns: now, for files."""
-        for _ in range(
-            self._waiting.qsize()
-        ):  # a slow disk never catches up with those that come meanwhile
+        # not those that come meanwhile: a slow disk would never catch up
+        for _ in range(self._waiting.qsize()):
             header, data = self._waiting.get_nowait()
             if header.file:
                 writer.attach_file(McapAttachment(header.file, header.media_type, data), unix_ns)
