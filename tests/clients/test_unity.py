@@ -75,10 +75,15 @@ def test_what_is_made_is_cleared_away_and_the_port_is_free_again(scene: dict[str
 
 
 def test_trouble_is_said_once(scene: dict[str, Any]) -> None:
-    warning, error = scene["said"]
+    warning, _, error = scene["said"]
     assert warning.startswith("warning: mocapd: lost")
     assert "no OSC" in warning
     assert error == "error: mocapd: no receiver is given"
+
+
+def test_a_port_that_is_none_is_named(scene: dict[str, Any]) -> None:
+    assert scene["impossible"] == "mocapd: port 70000 is not from 1 to 65535"
+    assert f"error: {scene['impossible']}" in scene["said"]
 
 
 def test_a_port_that_somebody_has_is_refused(unity_told: dict[str, Any]) -> None:

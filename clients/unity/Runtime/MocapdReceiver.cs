@@ -46,15 +46,25 @@ namespace Mocapd
         private void OnEnable()
         {
             _kindsSaid = 0;
+            if (port < 1 || port > IPEndPoint.MaxPort)
+            {
+                Fail("mocapd: port " + port + " is not from 1 to " + IPEndPoint.MaxPort);
+                return;
+            }
             try
             {
                 _receiver = new FrameReceiver(port, hearNetwork ? IPAddress.Any : IPAddress.Loopback, silenceSeconds);
             }
             catch (SocketException error)
             {
-                _failure = "mocapd: cannot listen on port " + port + ": " + error.Message;
-                Debug.LogError(_failure, this);
+                Fail("mocapd: cannot listen on port " + port + ": " + error.Message);
             }
+        }
+
+        private void Fail(string why)
+        {
+            _failure = why;
+            Debug.LogError(why, this);
         }
 
         private void OnDisable()

@@ -50,6 +50,10 @@ namespace Mocapd.Tests
             place.SetActive(true); // the port is free again
             string anew = receiver.Status(0);
             place.SetActive(false);
+            receiver.Port = 70000;
+            place.SetActive(true);
+            string impossible = receiver.Status(0);
+            place.SetActive(false);
 
             GameObject bare = new GameObject("bare");
             bare.AddComponent<MocapdAvatar>(); // without a receiver and without a humanoid
@@ -57,7 +61,7 @@ namespace Mocapd.Tests
                 + PlayStreams.Json(trackedBefore) + "," + PlayStreams.Json(trackedPosed) + ","
                 + PlayStreams.Json(trackedLost) + "],\"open\":" + openAfter
                 + ",\"left\":" + left + ",\"made\":" + (scenery - before) + ",\"human\":" + AvatarBuilder.Last.human.Length
-                + ",\"anew\":" + PlayStreams.Json(anew) + ",\"said\":" + Said() + "}";
+                + ",\"anew\":" + PlayStreams.Json(anew) + ",\"impossible\":" + PlayStreams.Json(impossible) + ",\"said\":" + Said() + "}";
         }
 
         public static string PlayedSample(List<byte[]> golden, int port)
