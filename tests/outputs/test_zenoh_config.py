@@ -91,6 +91,10 @@ def test_plain_tcp_on_a_network_can_be_asked_for() -> None:
         ("tcp/[::]:7447", False),
         ("tcp/192.168.1.4:7447", False),
         ("tcp/somewhere:7447", False),
+        ("tcp/127.0.0.1:7447#iface=lo:1", True),
+        ("tcp/[::1]:7447?prio=1:2", True),
+        ("tcp/0.0.0.0:7447#iface=127.0.0.1:1", False),
+        ("tcp/0.0.0.0:7447?x=/127.0.0.1:1", False),
     ],
 )
 def test_loopback_addresses_are_told_from_others(endpoint: str, stays: bool) -> None:

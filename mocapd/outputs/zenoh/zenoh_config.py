@@ -121,7 +121,7 @@ def without_options(endpoint: str) -> str:
 
 def is_loopback(endpoint: str) -> bool:
     """Whether an endpoint such as `tcp/127.0.0.1:7447` stays on this machine."""
-    address = endpoint.partition("/")[2].rpartition(":")[0].strip("[]")
+    address = without_options(endpoint).partition("/")[2].rpartition(":")[0].strip("[]")
     try:
         return ipaddress.ip_address(address).is_loopback
     except ValueError:
