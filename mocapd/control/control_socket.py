@@ -50,8 +50,11 @@ class ControlSocket:
         """Starts serving. Raises CannotCreateError."""
         try:
             self._path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            self._path.unlink(missing_ok=True)  # left by an earlier process with our pid
-            self._server = _Server(self._path, self._answer, self._died)
+            # renamed once it listens: whoever looks for daemons removes sockets at which nobody does
+            hidden = self._path.with_name(f".{self._path.name}")
+            hidden.unlink(missing_ok=True)  # left by an earlier process with our pid
+            self._server = _Server(hidden, self._answer, self._died)
+            hidden.rename(self._path)
         except OSError as error:
             raise CannotCreateError(
                 f"no control socket can be made: {error.strerror}",

@@ -12,6 +12,7 @@ import threading
 from collections.abc import Iterator
 from multiprocessing.queues import SimpleQueue
 from pathlib import Path
+from socketserver import UnixStreamServer
 
 import msgspec
 import pytest
@@ -140,6 +141,23 @@ def test_what_a_killed_daemon_left_is_removed_and_in_nobodys_way(folder: Path) -
     one.socket.open()
     assert the_one(folder).status.instance == "hall"
     one.socket.close()
+
+
+def test_who_looks_while_a_daemon_opens_its_socket_does_not_remove_it(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one = Answering(folder)
+    listen = UnixStreamServer.server_activate
+
+    def looked_at(server: UnixStreamServer) -> None:
+        assert found(folder) == FoundDaemons()  # it is bound, and does not listen yet
+        listen(server)
+
+    monkeypatch.setattr(UnixStreamServer, "server_activate", looked_at)
+    one.socket.open()
+    assert the_one(folder).status.instance == "hall"
+    one.socket.close()
+    assert not list(folder.iterdir())
 
 
 def test_one_that_says_nothing_is_told_apart_from_one_that_is_not_there(folder: Path) -> None:
