@@ -117,7 +117,7 @@ class Hecht2009Tracker:
         """Track one frame set. Raises ConfigError when a frame's size is not its calibration's."""
         require_stature(shape, self._stature_m)
         if not np.array_equal(shape.factors, self._body.shape.factors):
-            self._body = self._body.with_shape(shape)
+            self._body = build_body(shape)
         self._turn += 1
         since_s = _NEVER_S if self._last_ns is None else seconds(frames.t_ns - self._last_ns)
         self._last_ns = frames.t_ns

@@ -19,7 +19,6 @@ HEAD, NECK = 0, 1
 SHOULDER, ELBOW, WRIST = (2, 9), (3, 10), (4, 11)
 WAIST = (5, 12)
 HIP, KNEE, ANKLE = (6, 13), (7, 14), (8, 15)
-MIRROR = np.array([0, 1, *range(9, 16), *range(2, 9)])
 
 # the three points of each limb, from the trunk outwards: the state of one particle filter
 LIMBS = {

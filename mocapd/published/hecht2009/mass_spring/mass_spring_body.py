@@ -1,6 +1,6 @@
 """The flexible body of one shape: masses, springs, limits and cross-sections, ready for the kernels."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from mocapd.published.hecht2009.mass_spring.body_points import (
 )
 from mocapd.published.hecht2009.mass_spring.frusta import Frusta, build_frusta, trunk_ellipses
 from mocapd.published.hecht2009.mass_spring.solver_kernels import Active, PointConstraints
-from mocapd.published.hecht2009.mass_spring.springs import Compliances, Springs, build_springs
+from mocapd.published.hecht2009.mass_spring.springs import COMPLIANCE, ENDS, spring_lengths
 from mocapd.types import Floats, Ints, Skeleton
 
 # Parts of the body's mass at the points, after the segments of Winter, Biomechanics of Human Movement, table 4.1: trunk
@@ -29,68 +29,46 @@ _MASS_PER_STATURE3 = 13.0  # [kg/m^3]: 70 kg at 1.75 m (Rohrer)
 _FLOOR_GIVE_M = 0.01
 _ARMS = np.array([[ELBOW[s], WRIST[s]] for s in (0, 1)])
 _PAIRS = np.array([KNEE, ANKLE])
-
-
-@dataclass(frozen=True, slots=True)
-class Softness:
-    """How the body is built. soft_waist: see `build_springs`; knee_gap_m, ankle_gap_m: the least distance of left and right
-    along the hip line: ankles pass each other closely when walking; passing_m: farther from each other than that, across
-    the hip line, legs may cross (two filters on one leg are near to each other, crossed legs are not); inf as in the paper:
-    never."""
-
-    soft_waist: bool = False
-    compliances: Compliances = field(default_factory=Compliances)
-    knee_gap_m: float = 0.05
-    ankle_gap_m: float = 0.03
-    passing_m: float = 0.12
+# The least distance of left and right along the hip line: ankles pass each other closely when walking.
+_KNEE_GAP_M, _ANKLE_GAP_M = 0.05, 0.03
+# Farther from each other than that, across the hip line, legs may cross, which the paper never lets them: two filters on one
+# leg are near to each other, crossed legs are not.
+_PASSING_M = 0.12
+_GAPS_M = np.array([[_KNEE_GAP_M, _PASSING_M], [_ANKLE_GAP_M, _PASSING_M]])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MassSpringBody:
-    """A flexible body. P = 16 points, S springs.
+    """A flexible body of sixteen points.
 
-    rest_m (16,3): the T-pose; mass_kg (16,): the base masses, that of the head infinite; lengths_m (S,): of the
-    springs; everybody: all constraints; limbs: those that touch each of LIMBS.
+    rest_m (16,3): the T-pose; mass_kg (16,): the base masses, that of the head infinite; everybody: all constraints; limbs:
+    those that touch each of LIMBS.
     """
 
     shape: BodyShape
-    softness: Softness
     skeleton: Skeleton
     rest_m: Floats
     mass_kg: Floats
-    springs: Springs
-    lengths_m: Floats
     frusta: Frusta
     constraints: PointConstraints
     everybody: Active
     limbs: dict[str, Active]
 
-    def with_shape(self, shape: BodyShape) -> "MassSpringBody":
-        """The same body in another shape, with that one's lengths."""
-        return build_body(shape, self.softness)
 
-
-def build_body(shape: BodyShape, softness: Softness | None = None) -> MassSpringBody:
+def build_body(shape: BodyShape) -> MassSpringBody:
     """The body of a shape, its springs at rest in the T-pose."""
-    softness = softness if softness is not None else Softness()
     skeleton = skeleton_of(shape)
     rest = rest_points(shape, skeleton)
-    springs = build_springs(softness.soft_waist, softness.compliances)
-    lengths = springs.lengths_of(rest)
     mass = _MASS_SHARES * _MASS_PER_STATURE3 * shape.stature_m**3
     mass[HEAD] = np.inf
     constraints = PointConstraints(
-        springs.ends, lengths, springs.compliance, plain(swings()), plain(hinges()),
-        trunk_ellipses(shape, skeleton, rest), _ARMS, _PAIRS,
-        np.array([[gap, softness.passing_m] for gap in (softness.knee_gap_m, softness.ankle_gap_m)]),
-        _clearance(shape, rest),
+        ENDS, spring_lengths(rest), COMPLIANCE, plain(swings()), plain(hinges()),
+        trunk_ellipses(shape, skeleton, rest), _ARMS, _PAIRS, _GAPS_M, _clearance(shape, rest),
     )  # fmt: skip
-    everybody = _active(springs, constraints, frozenset(range(N_POINTS)))
-    limbs = {name: _active(springs, constraints, frozenset(limb)) for name, limb in LIMBS.items()}
-    return MassSpringBody(
-        shape, softness, skeleton, rest, mass, springs, lengths,
-        build_frusta(shape, skeleton, rest), constraints, everybody, limbs,
-    )  # fmt: skip
+    everybody = _active(frozenset(range(N_POINTS)))
+    limbs = {name: _active(frozenset(limb)) for name, limb in LIMBS.items()}
+    frusta = build_frusta(shape, skeleton, rest)
+    return MassSpringBody(shape, skeleton, rest, mass, frusta, constraints, everybody, limbs)
 
 
 def _clearance(shape: BodyShape, rest_m: Floats) -> Floats:
@@ -101,7 +79,7 @@ def _clearance(shape: BodyShape, rest_m: Floats) -> Floats:
     return out
 
 
-def _active(springs: Springs, constraints: PointConstraints, points: frozenset[int]) -> Active:
+def _active(points: frozenset[int]) -> Active:
     """The constraints that may move one of the points."""
 
     def touching(moved: Ints) -> Ints:
@@ -109,7 +87,7 @@ def _active(springs: Springs, constraints: PointConstraints, points: frozenset[i
         return np.array(rows, dtype=np.int64)
 
     return Active(
-        touching(springs.ends), touching(swings().points),
+        touching(ENDS), touching(swings().points),
         touching(hinges().points[:, 1:]),  # a hinge moves its middle and its end
-        touching(constraints.arms), touching(constraints.pairs), np.array(sorted(points)),
+        touching(_ARMS), touching(_PAIRS), np.array(sorted(points)),
     )  # fmt: skip

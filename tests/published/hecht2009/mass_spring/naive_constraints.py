@@ -17,6 +17,7 @@ from mocapd.published.hecht2009.mass_spring.body_points import (
 from mocapd.published.hecht2009.mass_spring.mass_spring_body import MassSpringBody
 from mocapd.types import Floats
 
+MIRROR = np.array([0, 1, *range(9, 16), *range(2, 9)])  # the points of the other side
 OUTWARD = (np.array([1.0, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]))
 
 
@@ -148,9 +149,8 @@ def legs_too_near_m(body: MassSpringBody, p: Floats) -> float:
     """By how much more the left knee or ankle should be to the left of the right one, along the hip line."""
     across = unit(p[HIP[0]] - p[HIP[1]])
     missing = []
-    softness = body.softness
-    for pair, gap in ((KNEE, softness.knee_gap_m), (ANKLE, softness.ankle_gap_m)):
+    for pair, (gap, passing_m) in zip((KNEE, ANKLE), body.constraints.gaps, strict=True):
         d = p[pair[0]] - p[pair[1]]
         beside = float(np.linalg.norm(d - (d @ across) * across))
-        missing.append(gap - max(0.0, beside - softness.passing_m) - float(d @ across))
+        missing.append(gap - max(0.0, beside - passing_m) - float(d @ across))
     return max(missing)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mocapd.body.shape import mean_shape
-from mocapd.published.hecht2009.mass_spring.body_points import LIMBS, MIRROR, N_POINTS
+from mocapd.published.hecht2009.mass_spring.body_points import LIMBS, N_POINTS
 from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
 from mocapd.published.hecht2009.mass_spring.simulation import (
     SimulationParams,
@@ -17,8 +17,10 @@ from mocapd.published.hecht2009.mass_spring.simulation import (
     relaxed_state,
     resting,
 )
+from mocapd.published.hecht2009.mass_spring.springs import COMPLIANCE, spring_lengths
 from mocapd.types import Floats
 from tests.published.hecht2009.mass_spring.naive_constraints import (
+    MIRROR,
     deepest_in_trunk_m,
     legs_too_near_m,
     worst_angle_rad,
@@ -89,18 +91,18 @@ def test_particles_become_valid(limb: str, seed: int, spread_m: float) -> None:
         assert np.degrees(worst_angle_rad(BODY, points)) < 6.0
         assert deepest_in_trunk_m(BODY, points) < 0.005
         assert legs_too_near_m(BODY, points) < 0.005
-        strain = np.abs(BODY.springs.lengths_of(points) - BODY.lengths_m)
-        assert strain[BODY.springs.compliance == 0.0].max() < 0.01
+        strain = np.abs(spring_lengths(points) - BODY.constraints.lengths)
+        assert strain[COMPLIANCE == 0.0].max() < 0.01
 
 
 @pytest.mark.parametrize("limb", sorted(LIMBS))
 def test_a_few_sweeps_take_most_of_the_way(limb: str) -> None:
     particles = cloud(limb, 5, 0.1, 200)
-    bones = BODY.springs.compliance == 0.0
+    bones = COMPLIANCE == 0.0
 
     def wrong(p: Floats) -> float:
         whole = np.stack([with_limb(limb, one) for one in p])
-        return float(np.abs(BODY.springs.lengths_of(whole) - BODY.lengths_m)[:, bones].mean())
+        return float(np.abs(spring_lengths(whole) - BODY.constraints.lengths)[:, bones].mean())
 
     before = wrong(particles)
     two, four = (wrong(project_limb(BODY, limb, particles, points_m(), sweeps=n)) for n in (2, 4))

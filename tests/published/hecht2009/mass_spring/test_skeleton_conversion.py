@@ -30,6 +30,7 @@ from mocapd.published.hecht2009.mass_spring.skeleton_conversion import (
     points_from_skeleton,
     skeleton_from_points,
 )
+from mocapd.published.hecht2009.mass_spring.springs import COMPLIANCE, spring_lengths
 from mocapd.types import Floats, Pose
 
 BODY = build_body(mean_shape(1.75))
@@ -157,9 +158,9 @@ def test_another_trackers_body_starts_this_one(seed: int) -> None:
     # the pose is nearly valid: springs and limits move nothing far but the hands at the trunk
     assert np.median(np.linalg.norm(after - points, axis=1)) < 0.05
     assert np.isfinite(after).all()
-    lengths = BODY.springs.lengths_of(after)
-    bones = BODY.springs.compliance == 0.0
-    assert np.abs(lengths - BODY.lengths_m)[bones].max() < 0.02
+    lengths = spring_lengths(after)
+    bones = COMPLIANCE == 0.0
+    assert np.abs(lengths - BODY.constraints.lengths)[bones].max() < 0.02
 
 
 def test_an_asymmetric_pose_has_its_points_on_the_right_sides() -> None:

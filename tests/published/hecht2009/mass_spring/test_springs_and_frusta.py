@@ -8,22 +8,23 @@ from mocapd.body.skeleton import INDEX
 from mocapd.published.hecht2009.mass_spring.body_points import (
     HEAD,
     LIMBS,
-    MIRROR,
     N_POINTS,
 )
 from mocapd.published.hecht2009.mass_spring.constraint_kernels import sweep_springs
 from mocapd.published.hecht2009.mass_spring.frusta import CHIN, CROWN, MID_WAIST, N_ENDS, NAMES
 from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
+from mocapd.published.hecht2009.mass_spring.springs import COMPLIANCE, ENDS
+from tests.published.hecht2009.mass_spring.naive_constraints import MIRROR
 
 BODY = build_body(mean_shape(1.75))
 N_SPRINGS = 24
 
 
 def test_the_papers_sixteen_points_and_twenty_four_springs() -> None:
-    assert BODY.springs.ends.shape == (N_SPRINGS, 2)
-    pairs = {frozenset(pair) for pair in BODY.springs.ends.tolist()}
+    assert ENDS.shape == (N_SPRINGS, 2)
+    pairs = {frozenset(pair) for pair in ENDS.tolist()}
     assert len(pairs) == N_SPRINGS
-    assert set(BODY.springs.ends.ravel().tolist()) == set(range(N_POINTS))
+    assert set(ENDS.ravel().tolist()) == set(range(N_POINTS))
     # each limb is a chain
     for a, b, c in LIMBS.values():
         assert frozenset((a, b)) in pairs
@@ -34,8 +35,8 @@ def test_the_body_is_symmetric() -> None:
     assert (MIRROR[MIRROR] == np.arange(N_POINTS)).all()
     mirrored = (BODY.rest_m * [-1.0, 1.0, 1.0])[MIRROR]
     assert np.abs(mirrored - BODY.rest_m).max() < 1e-12
-    ends = BODY.springs.ends.tolist()
-    values = zip(BODY.lengths_m, BODY.springs.compliance, strict=True)
+    ends = ENDS.tolist()
+    values = zip(BODY.constraints.lengths, COMPLIANCE, strict=True)
     of_pair = {frozenset(pair): value for pair, value in zip(ends, values, strict=True)}
     for pair in ends:
         assert of_pair[frozenset(MIRROR[pair].tolist())] == pytest.approx(of_pair[frozenset(pair)])
