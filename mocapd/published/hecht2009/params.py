@@ -7,7 +7,6 @@ from mocapd.published.hecht2009.cylinders.limb_params import (
     LimbMotionParams,
     LimbScoreParams,
 )
-from mocapd.published.hecht2009.head.head_params import HeadParams
 from mocapd.published.hecht2009.mass_spring.simulation import SimulationParams
 from mocapd.published.hecht2009.motion_edges import MotionEdgeParams
 from mocapd.vision.room_background import BackgroundParams
@@ -22,7 +21,6 @@ class Params:
     particles: int = 200  # of each limb [Hecht 2009, section IV.A]
     particle_constraints: bool = True
     seed: int = 0
-    head: HeadParams = field(default_factory=HeadParams)
     motion: LimbMotionParams = field(default_factory=LimbMotionParams)
     score: LimbScoreParams = field(default_factory=LimbScoreParams)
     appearance: LimbAppearanceParams = field(default_factory=LimbAppearanceParams)

@@ -95,7 +95,7 @@ class Hecht2009Tracker:
         self._stature_m = stature_m
         self._body = build_body(mean_shape(stature_m))
         self._views = RigEvidence(rig, p)
-        self._head = HeadTracker(rig.cameras, stature_m, cascade, p.head, p.seed)
+        self._head = HeadTracker(rig.cameras, stature_m, cascade, p.seed)
         self._tracking = TrackingState(tracking)
         self.probe: Probe = no_probe
         self.reset()

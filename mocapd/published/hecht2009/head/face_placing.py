@@ -11,7 +11,16 @@ from mocapd.geometry.camera_model import normalised, project, to_camera
 from mocapd.geometry.triangulation import triangulate
 from mocapd.published.hecht2009.face.face_detection import FaceBox, face_windows, group_windows
 from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
-from mocapd.published.hecht2009.head.head_params import HeadParams
+from mocapd.published.hecht2009.head.head_params import (
+    FACE_DEPTH_SD,
+    FACE_SD,
+    FARTHEST_M,
+    LEAST_WINDOWS,
+    MEETING_M,
+    NEAREST_M,
+    SIZE_SHARE,
+    is_head_sized,
+)
 from mocapd.published.hecht2009.head.head_shape import head_size
 from mocapd.published.hecht2009.head.head_views import HeadView, have_baseline, ray_through
 from mocapd.published.hecht2009.head.stereo_distance import (
@@ -43,24 +52,34 @@ class PlacedFace:
     boxes: dict[int, FaceBox]
     size_share: float
 
+    @property
+    def is_head_sized(self) -> bool:
+        """True for a face of a person's size."""
+        return is_head_sized(self.size_share)
+
+    @property
+    def is_sure(self) -> bool:
+        """True if another view agrees on a person's face."""
+        return self.depth is not Depth.SIZE and self.is_head_sized
+
 
 def apparent_distance_m(view: HeadView, box: FaceBox, stature_m: float) -> float:
     """Distance along the ray to the box's middle, by the person's face size."""
     depth_m = FACE_WIDTH * stature_m * float(view.camera.K[0, 0]) / box.size_px
-    _, ray = ray_through(view, _middle(box))
+    _, ray = ray_through(view, middle_px(box))
     return depth_m / max(float((view.camera.R @ ray)[2]), 0.1)
 
 
 def placed_face(
     views: Sequence[HeadView], mine: HeadView, box: FaceBox, cascade: CascadeArrays, stature_m: float,
-    params: HeadParams, is_still: Callable[[HeadView, FaceBox], bool],
+    is_still: Callable[[HeadView, FaceBox], bool],
 ) -> PlacedFace:  # fmt: skip
     """The position of the face in `box` of the view `mine`, by the best of the other views, or else by its size.
 
     is_still: whether a face of another view is part of the background; such a face is no match.
     """
     apparent_m = apparent_distance_m(mine, box, stature_m)
-    from_m, ray = ray_through(mine, _middle(box))
+    from_m, ray = ray_through(mine, middle_px(box))
     about_m = from_m + apparent_m * ray
     far = []
     for other in views:
@@ -70,8 +89,8 @@ def placed_face(
             far.append(other)
             continue
         found = swept_distance(
-            mine.stereo, other.stereo, _middle(box), _PATCH * box.size_px,
-            (params.nearest_m, params.farthest_m), head_size(stature_m).length_m,
+            mine.stereo, other.stereo, middle_px(box), _PATCH * box.size_px,
+            (NEAREST_M, FARTHEST_M), head_size(stature_m).length_m,
         )  # fmt: skip
         if found is not None:
             return PlacedFace(
@@ -79,24 +98,22 @@ def placed_face(
                 found.distance_m / apparent_m,
             )  # fmt: skip
     for other in far:
-        met = _met(mine, other, box, apparent_m, cascade, stature_m, params, is_still)
+        met = _met(mine, other, box, apparent_m, cascade, stature_m, is_still)
         if met is not None:
             return met
-    sigma_m = params.face_depth_sd * apparent_m
+    sigma_m = FACE_DEPTH_SD * apparent_m
     return PlacedFace(about_m, sigma_m, Depth.SIZE, {mine.index: box}, 1.0)
 
 
 def fits_swapped(
-    mine: HeadView, other: HeadView, box: FaceBox, cascade: CascadeArrays, stature_m: float, params: HeadParams,
+    mine: HeadView, other: HeadView, box: FaceBox, cascade: CascadeArrays, stature_m: float,
     is_still: Callable[[HeadView, FaceBox], bool],
 ) -> bool:  # fmt: skip
     """Whether the face is of a person's size where the two views agree on it once their pictures change places."""
     if not have_baseline(mine.camera, other.camera):
         return False
     crossed = _with_cameras_of(mine, other), _with_cameras_of(other, mine)
-    placed = placed_face(crossed, crossed[0], box, cascade, stature_m, params, is_still)
-    low, high = params.size_share
-    return placed.depth in (Depth.STEREO, Depth.MEETING) and low < placed.size_share < high
+    return placed_face(crossed, crossed[0], box, cascade, stature_m, is_still).is_sure
 
 
 def _with_cameras_of(view: HeadView, other: HeadView) -> HeadView:
@@ -104,37 +121,38 @@ def _with_cameras_of(view: HeadView, other: HeadView) -> HeadView:
     return replace(view, stereo=replace(other.stereo, grey=view.grey))
 
 
-def _middle(box: FaceBox) -> Floats:
+def middle_px(box: FaceBox) -> Floats:
+    """The middle (2,) of a box [px]."""
     return np.array([box.x_px, box.y_px])
 
 
 def _met(
     mine: HeadView, other: HeadView, box: FaceBox, apparent_m: float, cascade: CascadeArrays, stature_m: float,
-    params: HeadParams, is_still: Callable[[HeadView, FaceBox], bool],
+    is_still: Callable[[HeadView, FaceBox], bool],
 ) -> PlacedFace | None:  # fmt: skip
     """The same face found along its ray in a view from elsewhere."""
-    from_m, ray = ray_through(mine, _middle(box))
-    ends_m = from_m + apparent_m * np.outer(params.size_share, ray)
+    from_m, ray = ray_through(mine, middle_px(box))
+    ends_m = from_m + apparent_m * np.outer(SIZE_SHARE, ray)
     depth_m = to_camera(other.camera, ends_m)[:, 2]
-    if (depth_m < params.nearest_m).any():
+    if (depth_m < NEAREST_M).any():
         return None
     ends_px = project(other.camera, ends_m)
     size_px = FACE_WIDTH * stature_m * float(other.camera.K[0, 0]) / float(depth_m.mean())
     low, high = ends_px.min(axis=0) - size_px, ends_px.max(axis=0) + size_px
     region = (int(low[0]), int(low[1]), int(high[0]) + 1, int(high[1]) + 1)
     sizes = tuple(size_px * share for share in (0.75, 0.9, 1.08, 1.3))
-    seen = group_windows(face_windows(cascade, other.grey, sizes, region), params.least_windows)
+    seen = group_windows(face_windows(cascade, other.grey, sizes, region), LEAST_WINDOWS)
     best: PlacedFace | None = None
     for candidate in seen:
-        xy = np.stack([normalised(mine.camera, _middle(box)), normalised(other.camera, _middle(candidate))])  # fmt: skip
+        xy = np.stack([normalised(mine.camera, middle_px(box)), normalised(other.camera, middle_px(candidate))])  # fmt: skip
         point_m, residual_m = triangulate([mine.camera, other.camera], xy)
-        if not np.isfinite(point_m).all() or residual_m.max() > params.meeting_m:
+        if not np.isfinite(point_m).all() or residual_m.max() > MEETING_M:
             continue
         share = float(np.linalg.norm(point_m - from_m)) / apparent_m
-        if not params.size_share[0] < share < params.size_share[1] or is_still(other, candidate):
+        if not is_head_sized(share) or is_still(other, candidate):
             continue
         if best is None or abs(np.log(share)) < abs(np.log(best.size_share)):
-            sigma_m = params.face_sd * FACE_WIDTH * stature_m * 2.0
+            sigma_m = FACE_SD * FACE_WIDTH * stature_m * 2.0
             boxes = {mine.index: box, other.index: candidate}
             best = PlacedFace(point_m, sigma_m, Depth.MEETING, boxes, share)
     return best

@@ -21,16 +21,16 @@ from mocapd.published.hecht2009.face.face_detection import (
     group_windows,
 )
 from mocapd.published.hecht2009.face.lbp_cascade_kernels import WINDOW_PX, CascadeArrays
-from mocapd.published.hecht2009.head.face_placing import (
-    Depth,
-    PlacedFace,
-    fits_swapped,
-    placed_face,
+from mocapd.published.hecht2009.head.face_placing import PlacedFace, fits_swapped, placed_face
+from mocapd.published.hecht2009.head.head_params import (
+    FARTHEST_M,
+    LEAST_WINDOWS,
+    NEAREST_M,
 )
-from mocapd.published.hecht2009.head.head_params import HeadParams
 from mocapd.published.hecht2009.head.head_views import HeadView
 from mocapd.types import Bytes
 
+_CANDIDATES, _CANDIDATE_S = 3, 0.6  # how many faces are kept, for how long after a detection
 _WINDOWS = 36_000  # classified in one step: 4 ms
 _LEAST_PX = 21.0  # of a face, with the picture enlarged a little
 _LOOKS = 4  # places of one step that are searched closely
@@ -62,8 +62,8 @@ class FaceCandidate:
 class FaceSearch:
     """State of the search: the face candidates, the scan position, and earlier pictures."""
 
-    def __init__(self, cascade: CascadeArrays, stature_m: float, params: HeadParams) -> None:
-        self._cascade, self._stature_m, self._params = cascade, stature_m, params
+    def __init__(self, cascade: CascadeArrays, stature_m: float) -> None:
+        self._cascade, self._stature_m = cascade, stature_m
         self.reset()
 
     def reset(self) -> None:
@@ -92,7 +92,7 @@ class FaceSearch:
         """Track the candidates and search for further faces; call `remember` before."""
         by_index = {view.index: view for view in views}
         followed = [self._follow(c, by_index.get(c.view), dt_s) for c in self.candidates]
-        self.candidates = [c for c in followed if c.unseen_s <= self._params.candidate_s]
+        self.candidates = [c for c in followed if c.unseen_s <= _CANDIDATE_S]
         if views:
             self._look(views)
         self._place_one(views, by_index)
@@ -122,16 +122,11 @@ class FaceSearch:
 
     def place(self, view: HeadView, box: FaceBox, views: Sequence[HeadView]) -> PlacedFace:
         """The position of the face in this box; mismatches count towards `are_swapped`."""
-        params = self._params
-        placed = placed_face(
-            views, view, box, self._cascade, self._stature_m, params, self._is_still
-        )
-        low, high = params.size_share
-        sure = placed.depth in (Depth.STEREO, Depth.MEETING) and low < placed.size_share < high
-        if sure:
+        placed = placed_face(views, view, box, self._cascade, self._stature_m, self._is_still)
+        if placed.is_sure:
             self._straight += 1
         elif any(
-            fits_swapped(view, other, box, self._cascade, self._stature_m, params, self._is_still)
+            fits_swapped(view, other, box, self._cascade, self._stature_m, self._is_still)
             for other in views
             if other.index != view.index
         ):
@@ -144,7 +139,7 @@ class FaceSearch:
         if not self._work:
             self._turn += 1
             view = views[self._turn % len(views)]
-            self._work = _parts(view, self._stature_m, self._params)
+            self._work = _parts(view, self._stature_m)
         windows, n = [np.empty((0, 3))], 0
         while self._work and n < _WINDOWS:
             size, region = self._work.pop(0)
@@ -159,13 +154,13 @@ class FaceSearch:
         for place in places[:_LOOKS]:
             faces = faces_near(
                 self._cascade, view.grey, place.x_px, place.y_px, place.size_px, 0.3 * place.size_px,
-                self._params.least_windows,
+                LEAST_WINDOWS,
             )  # fmt: skip
             if faces:
                 alive = self._alive(view, faces[0])
                 self.candidates.append(FaceCandidate(view.index, faces[0], 0.0, 1, alive))
         self.candidates.sort(key=lambda c: -c.box.size_px)
-        del self.candidates[self._params.candidates :]
+        del self.candidates[_CANDIDATES:]
 
     def _is_still(self, view: HeadView, box: FaceBox) -> bool:
         return self._alive(view, box) is False
@@ -184,15 +179,11 @@ class FaceSearch:
         return bool(np.mean(changed) >= 0.5)
 
 
-def _parts(
-    view: HeadView, stature_m: float, params: HeadParams
-) -> list[tuple[float, tuple[int, int, int, int]]]:
+def _parts(view: HeadView, stature_m: float) -> list[tuple[float, tuple[int, int, int, int]]]:
     """Sizes [px] and regions of one sweep over a picture, each of a step's work at most."""
     h, w = view.grey.shape
     wide = FACE_WIDTH * stature_m * float(view.camera.K[0, 0])
-    sizes = face_sizes(
-        max(_LEAST_PX, wide / params.farthest_m), min(wide / params.nearest_m, 0.8 * min(h, w))
-    )
+    sizes = face_sizes(max(_LEAST_PX, wide / FARTHEST_M), min(wide / NEAREST_M, 0.8 * min(h, w)))
     out = []
     for size in reversed(sizes):
         n = -(-_count(size, (0, 0, w, h)) // _WINDOWS)

@@ -4,12 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.published.hecht2009.head.head_params import HeadParams
 from mocapd.types import Floats
 
 _SD_FLOOR_M = 0.004  # of the cloud along any direction, so that its density can be written down
 
 _FAR_SDS = 4.0
+_PARTICLES = 100  # [Hecht 2009, section IV.A]
+_MEASURED_SHARE = 0.3  # of the particles, drawn where the measurements are
+# spread of a head's acceleration; the hardest in recorded motion is 10 to 20
+_PUSH_SD_M_S2 = 8.0
+_JITTER_SD_M = 0.006  # over 1/30 s, growing with the square root of time
 _WIDE_M = 0.5  # prior spread of a position
 
 
@@ -50,17 +54,17 @@ def observations(parts: list[tuple[Floats, Floats]]) -> HeadObservations:
 
 
 def cloud_at(
-    middle_m: Floats, covariance_m2: Floats, params: HeadParams, rng: np.random.Generator
+    middle_m: Floats, covariance_m2: Floats, rng: np.random.Generator, particles: int = _PARTICLES
 ) -> Cloud:
     """A cloud for a head at rest near a position."""
-    place = rng.multivariate_normal(middle_m, covariance_m2, params.particles, method="eigh")
-    return Cloud(place, rng.normal(0.0, 0.3, (params.particles, 3)))
+    place = rng.multivariate_normal(middle_m, covariance_m2, particles, method="eigh")
+    return Cloud(place, rng.normal(0.0, 0.3, (particles, 3)))
 
 
-def predict(cloud: Cloud, dt_s: float, params: HeadParams, rng: np.random.Generator) -> Cloud:
+def predict(cloud: Cloud, dt_s: float, rng: np.random.Generator) -> Cloud:
     """The cloud after dt: constant velocity and noise."""
-    push = rng.normal(0.0, params.push_sd_m_s2, cloud.place_m.shape)
-    jitter = rng.normal(0.0, params.jitter_sd_m * np.sqrt(30.0 * dt_s), cloud.place_m.shape)
+    push = rng.normal(0.0, _PUSH_SD_M_S2, cloud.place_m.shape)
+    jitter = rng.normal(0.0, _JITTER_SD_M * np.sqrt(30.0 * dt_s), cloud.place_m.shape)
     place = cloud.place_m + cloud.velocity_m_s * dt_s + 0.5 * push * dt_s**2 + jitter
     return Cloud(place, cloud.velocity_m_s + push * dt_s)
 
@@ -98,24 +102,22 @@ def is_far(cloud: Cloud, measured: HeadObservations) -> bool:
     return False
 
 
-def cloud_about(
-    measured: HeadObservations, before: Cloud, params: HeadParams, rng: np.random.Generator
-) -> Cloud:
+def cloud_about(measured: HeadObservations, before: Cloud, rng: np.random.Generator) -> Cloud:
     """Particles sampled at the measurements, with unmeasured directions unchanged and a wide velocity."""
     mean, _ = moments(before.place_m)
     middle, covariance = fuse(mean, _WIDE_M**2 * np.eye(3), measured)
-    return cloud_at(middle, covariance, params, rng)
+    return cloud_at(middle, covariance, rng)
 
 
 def propose(
-    cloud: Cloud, measured: HeadObservations, params: HeadParams, rng: np.random.Generator
+    cloud: Cloud, measured: HeadObservations, rng: np.random.Generator
 ) -> tuple[Cloud, Floats]:
     """Draws some of the particles at the measurements; with the logarithm (P,) of the importance weights.
 
     Importance sampling from a mixture (Isard and Blake, ICondensation, ECCV 1998), the cloud's own density taken as
     Gaussian. Their velocities follow from the cloud's correlation of place and velocity.
     """
-    n = round(params.measured_share * len(cloud.place_m)) if len(measured.means_m) else 0
+    n = round(_MEASURED_SHARE * len(cloud.place_m)) if len(measured.means_m) else 0
     if n == 0:
         return cloud, np.zeros(len(cloud.place_m))
     mean, covariance = moments(cloud.place_m)

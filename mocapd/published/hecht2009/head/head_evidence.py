@@ -9,7 +9,7 @@ from mocapd.body.head_proportions import FACE_WIDTH
 from mocapd.geometry.camera_model import centre, to_camera
 from mocapd.published.hecht2009.face.face_detection import FaceBox, faces_near
 from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
-from mocapd.published.hecht2009.head.face_placing import PlacedFace
+from mocapd.published.hecht2009.head.face_placing import PlacedFace, apparent_distance_m, middle_px
 from mocapd.published.hecht2009.head.head_cloud import Cloud, along_ray, at_distance
 from mocapd.published.hecht2009.head.head_colours import (
     HeadColours,
@@ -19,7 +19,11 @@ from mocapd.published.hecht2009.head.head_colours import (
     light_gain,
     update_colours,
 )
-from mocapd.published.hecht2009.head.head_params import HeadParams
+from mocapd.published.hecht2009.head.head_params import (
+    FACE_DEPTH_SD,
+    FACE_SD,
+    LEARN_SUPPORT,
+)
 from mocapd.published.hecht2009.head.head_particle_kernels import score_heads
 from mocapd.published.hecht2009.head.head_samples import INSIDE, OUTLINE
 from mocapd.published.hecht2009.head.head_shape import ellipse_of, head_size
@@ -32,6 +36,8 @@ from mocapd.published.hecht2009.head.stereo_distance import (
 )
 from mocapd.types import Bytes, Floats
 
+_DEPTH_REACH_M = 0.35  # of the search for the distance about the predicted one
+_COLOUR_WEIGHT = 6.0  # logarithm of a likelihood, by the difference of two odds -1..1
 _REACH = 0.5  # of the face's side: search radius about the predicted place
 _SAME = 0.7  # of the face's side: a face farther away belongs to another head
 _WINDOWS = 1  # detections that confirm a predicted face
@@ -71,10 +77,8 @@ class HeadSighting:
 class HeadEvidence:
     """Holds each camera's colour model of the head."""
 
-    def __init__(
-        self, n_cameras: int, cascade: CascadeArrays, stature_m: float, params: HeadParams
-    ) -> None:
-        self._n, self._cascade, self._params = n_cameras, cascade, params
+    def __init__(self, n_cameras: int, cascade: CascadeArrays, stature_m: float) -> None:
+        self._n, self._cascade = n_cameras, cascade
         self._stature_m, self._size = stature_m, head_size(stature_m)
         self._half = np.array([self._size.width_m, self._size.height_m])
         self.reset()
@@ -125,17 +129,15 @@ class HeadEvidence:
         self, view: HeadView, box: FaceBox, guess: HeadGuess, has_distance: bool
     ) -> list[tuple[Floats, Floats]]:
         """A face measures the head's position across the ray and, without a pair, its distance by size."""
-        params = self._params
-        from_m, ray = ray_through(view, np.array([box.x_px, box.y_px]))
+        from_m, ray = ray_through(view, middle_px(box))
         # where the head is now, not when this picture was taken
         from_m = from_m - view.offset_s * guess.velocity_m_s
         depth_m = self._depth_m(view, guess.middle_m)
-        across_m = params.face_sd * box.size_px * depth_m / float(view.camera.K[0, 0])
+        across_m = FACE_SD * box.size_px * depth_m / float(view.camera.K[0, 0])
         out = [along_ray(from_m, ray, across_m)]
         if not has_distance:
-            apparent_m = FACE_WIDTH * self._stature_m * float(view.camera.K[0, 0]) / box.size_px
-            apparent_m /= max(float((view.camera.R @ ray)[2]), 0.1)
-            out.append(at_distance(from_m, ray, apparent_m, params.face_depth_sd * apparent_m))
+            apparent_m = apparent_distance_m(view, box, self._stature_m)
+            out.append(at_distance(from_m, ray, apparent_m, FACE_DEPTH_SD * apparent_m))
         return out
 
     def _distance(
@@ -149,7 +151,7 @@ class HeadEvidence:
         x, y, half_w, half_h = outline.ellipse.tolist()
         up = outline.up
         right = np.array([-up[1], up[0]])
-        middle = np.array([x, y]) if box is None else np.array([box.x_px, box.y_px])
+        middle = np.array([x, y]) if box is None else middle_px(box)
         patches = [(middle, _PATCH * half_h)]
         if box is None:
             patches += [(middle + a * half_w * right + b * half_h * up, c * half_h) for a, b, c in _PARTS]  # fmt: skip
@@ -180,10 +182,9 @@ class HeadEvidence:
     def _swept(
         self, near: HeadView, other: HeadView, patch_px: Floats, half_px: float, away_m: float, guess: HeadGuess
     ) -> Distance | None:  # fmt: skip
-        reach_m = self._params.depth_reach_m
         return swept_distance(
             near.stereo, other.stereo, patch_px, half_px,
-            (max(away_m - reach_m, 0.3), away_m + reach_m), self._size.length_m,
+            (max(away_m - _DEPTH_REACH_M, 0.3), away_m + _DEPTH_REACH_M), self._size.length_m,
             (other.offset_s - near.offset_s) * guess.velocity_m_s,
         )  # fmt: skip
 
@@ -195,7 +196,7 @@ class HeadEvidence:
                 middles = cloud.place_m + view.offset_s * cloud.velocity_m_s
                 score = self._scores(view, middles, guess_m, view.foreground)
                 if score is not None:
-                    out += self._params.colour_weight * score
+                    out += _COLOUR_WEIGHT * score
         return out
 
     def support(self, views: Sequence[HeadView], middle_m: Floats, velocity_m_s: Floats) -> float:
@@ -218,8 +219,7 @@ class HeadEvidence:
         out = np.empty(len(middles_m))
         score_heads(
             np.ascontiguousarray(middles_m), self._half, INSIDE, OUTLINE, view.stereo.arrays, view.pixels,
-            self._colours[view.index].head_odds, light_gain(view.pixels, outline), foreground, outline.up,
-            self._params.edge_weight, self._params.full_edge, out,
+            self._colours[view.index].head_odds, light_gain(view.pixels, outline), foreground, outline.up, out,
         )  # fmt: skip
         return out
 
@@ -243,7 +243,7 @@ class HeadEvidence:
             if outline is None:
                 continue
             facing = boxes[view.index] is not None
-            if facing or self._sure(view, at_m) >= self._params.learn_support:
+            if facing or self._sure(view, at_m) >= LEARN_SUPPORT:
                 self._colours[view.index] = update_colours(
                     self._colours[view.index], view.pixels, outline, facing, dt_s
                 )

@@ -10,6 +10,9 @@ from mocapd.published.hecht2009.head.projection_kernels import BEHIND, pixel_of
 
 Array = NDArray[np.float64]
 
+_EDGE_WEIGHT = 0.5  # of a full outline, against colours that differ by one
+_FULL_EDGE = 30.0  # difference of brightness of a clear edge, 0..255
+
 
 @kernel
 def score_heads(
@@ -23,17 +26,14 @@ def score_heads(
     gain: float,
     foreground: NDArray[np.uint8],
     up: Array,
-    edge_weight: float,
-    full_edge: float,
     out: Array,
 ) -> None:
-    """Fill out (P,): colour inside less colour beside, each -1..1, and edge_weight times the outline's contrast 0..1.
+    """Fill out (P,): colour inside less colour beside, each -1..1, and _EDGE_WEIGHT times the outline's contrast 0..1.
 
     middles (P,3) [m, world]; size (2,) half width and height [m]; inside (N,2), outline (M,2): samples of the unit
     disc and of the unit circle, x right and y up; picture (H,W,3) BGR; odds, gain: of the head's colours; up (2,): unit
-    vector to the head's top [px]; full_edge: difference of brightness, 0..255, of a clear edge; foreground
-    (H,W): 0 where the background shows, which counts as a colour that heads never have; (0,0): not known. What lies
-    outside of the picture counts as neither.
+    vector to the head's top [px]; foreground (H,W): 0 where the background shows, which counts as a colour that heads
+    never have; (0,0): not known. What lies outside of the picture counts as neither.
     """
     h, w, _ = picture.shape
     K = camera[2]
@@ -68,8 +68,8 @@ def score_heads(
                 step = 0
                 for c in range(3):
                     step += abs(int(picture[v, u, c]) - int(picture[t, s, c]))
-                edge += min(1.0, step / (3.0 * full_edge))
-        out[p] = mine / len(inside) - beside / len(outline) + edge_weight * edge / len(outline)
+                edge += min(1.0, step / (3.0 * _FULL_EDGE))
+        out[p] = mine / len(inside) - beside / len(outline) + _EDGE_WEIGHT * edge / len(outline)
 
 
 @kernel

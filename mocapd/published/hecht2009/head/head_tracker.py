@@ -30,7 +30,12 @@ from mocapd.published.hecht2009.head.head_cloud import (
 )
 from mocapd.published.hecht2009.head.head_evidence import HeadEvidence, HeadGuess
 from mocapd.published.hecht2009.head.head_outline import outlined_head
-from mocapd.published.hecht2009.head.head_params import HeadParams
+from mocapd.published.hecht2009.head.head_params import (
+    FACE_SD,
+    FARTHEST_M,
+    LEARN_SUPPORT,
+    NEAREST_M,
+)
 from mocapd.published.hecht2009.head.head_particle_kernels import score_observations
 from mocapd.published.hecht2009.head.head_track import (
     HeadPicture,
@@ -41,6 +46,12 @@ from mocapd.published.hecht2009.head.head_track import (
 from mocapd.published.hecht2009.head.head_views import HeadView, have_baseline, head_views
 from mocapd.types import Camera, Floats
 
+_OUTLIER = 0.02  # share of measurements that are of something else
+_LEAST_LOOKS = 2  # detections of a face
+_OUTLINE_LOOKS = 6  # with a head outline before the background and no detected face
+_COAST_S = 0.6  # without a face, colours or distance that agree
+_LEAST_SUPPORT = 0.5  # of colours and outline together, at the best place
+_FACING_S = 0.4  # validity of a detected face for the person's facing direction
 _START_ACROSS = 0.25  # of the box's side: spread of the first particles across the ray
 _SEARCH_AGAIN_S = 1.0  # without its face before the search for another one starts
 _HAND_OVER_S = 2.0  # without its face before another one, as near, replaces it
@@ -58,15 +69,13 @@ class HeadTracker:
         cameras: Sequence[Camera],
         stature_m: float,
         cascade: CascadeArrays,
-        params: HeadParams | None = None,
         seed: int = 0,
     ) -> None:
         """cascade: of frontal faces; seed: of everything random, so that the same pictures give the same track."""
-        self._params = params or HeadParams()
         self._cameras, self._stature_m, self._seed = tuple(cameras), stature_m, seed
         self._arrays = [camera_arrays(camera) for camera in cameras]
-        self._search = FaceSearch(cascade, stature_m, self._params)
-        self._evidence = HeadEvidence(len(self._cameras), cascade, stature_m, self._params)
+        self._search = FaceSearch(cascade, stature_m)
+        self._evidence = HeadEvidence(len(self._cameras), cascade, stature_m)
         apart = [have_baseline(a, b) for i, a in enumerate(cameras) for b in cameras[:i]]
         self._fault = StereoFault.NONE if all(apart) else StereoFault.NO_BASELINE
         self.reset()
@@ -84,7 +93,7 @@ class HeadTracker:
         self._yaw_rad: float | None = None
         self._near_m = near_m
         if near_m is not None:
-            self._cloud = cloud_at(near_m, 0.05**2 * np.eye(3), self._params, self._rng)
+            self._cloud = cloud_at(near_m, 0.05**2 * np.eye(3), self._rng)
 
     def step(self, pictures: Sequence[HeadPicture], dt_s: float) -> HeadTrack:
         """The head in these pictures, one for each camera, dt after those before."""
@@ -95,7 +104,7 @@ class HeadTracker:
             self._evidence.learn_first(
                 views, PlacedFace(self._near_m, 0.05, Depth.MEETING, {}, 1.0)
             )
-            self._faceless_s = self._params.facing_s + 1e-6
+            self._faceless_s = _FACING_S + 1e-6
             self._near_m = None
         if self._cloud is not None:
             track = self._filter_step(self._cloud, views, dt_s)
@@ -125,7 +134,7 @@ class HeadTracker:
 
     def _find_by_outline(self, views: Sequence[HeadView]) -> HeadTrack:
         """A head without a detected face: a head outline before the background in several successive looks."""
-        outlined = outlined_head(views, self._stature_m, self._params)
+        outlined = outlined_head(views, self._stature_m)
         lost = HeadTrack(HeadState.LOST, fault=self._fault)
         if outlined is None:
             self._outlines_m = []
@@ -135,11 +144,11 @@ class HeadTracker:
         if float(np.linalg.norm(placed.middle_m - last)) > _APART_M:
             self._outlines_m = []
         self._outlines_m.append(placed.middle_m)
-        if len(self._outlines_m) < self._params.outline_looks:
+        if len(self._outlines_m) < _OUTLINE_LOOKS:
             return lost
         of = FaceCandidate(index, box, 0.0, len(self._outlines_m), True, placed, 0.0)
         self._start(of, placed, views)
-        self._faceless_s = self._params.facing_s + 1e-6
+        self._faceless_s = _FACING_S + 1e-6
         return replace(self._track_of_face(HeadState.TRACKED, of, placed), yaw_rad=None)
 
     def _is_head(self, of: FaceCandidate, placed: PlacedFace) -> bool:
@@ -147,12 +156,8 @@ class HeadTracker:
         camera, or two in one place, use the size only."""
         alone = len(self._cameras) == 1 or self._fault is StereoFault.NO_BASELINE
         is_placed = alone or placed.depth is not Depth.SIZE
-        often = of.looks >= self._params.least_looks
-        return often and is_placed and self._is_head_sized(placed)
-
-    def _is_head_sized(self, of: PlacedFace) -> bool:
-        low, high = self._params.size_share
-        return low < of.size_share < high
+        often = of.looks >= _LEAST_LOOKS
+        return often and is_placed and placed.is_head_sized
 
     def _may_start(self, of: FaceCandidate) -> bool:
         return of.unseen_s == 0.0 and of.alive is True
@@ -171,7 +176,7 @@ class HeadTracker:
         along = np.outer(ray, ray)
         across_m = self._across_m(_START_ACROSS, of, placed)
         covariance = placed.sigma_along_m**2 * along + across_m**2 * (np.eye(3) - along)
-        self._cloud = cloud_at(placed.middle_m, covariance, self._params, self._rng)
+        self._cloud = cloud_at(placed.middle_m, covariance, self._rng)
         self._faceless_s = self._unsupported_s = 0.0
         self._evidence.reset()
         self._evidence.learn_first(views, placed)
@@ -181,7 +186,7 @@ class HeadTracker:
     def _track_of_face(self, state: HeadState, of: FaceCandidate, placed: PlacedFace) -> HeadTrack:
         yaw = self._towards_rad(placed.middle_m, of.view)
         boxes = tuple(placed.boxes.get(i) for i in range(len(self._cameras)))
-        across_m = self._across_m(self._params.face_sd, of, placed)
+        across_m = self._across_m(FACE_SD, of, placed)
         return HeadTrack(
             state, placed.middle_m, placed.sigma_along_m, across_m, yaw, boxes, 0.0, self._fault
         )
@@ -195,19 +200,18 @@ class HeadTracker:
         self, before: Cloud, views: Sequence[HeadView], dt_s: float
     ) -> HeadTrack | None:
         """The filter's step; None, and the cloud is dropped, after too long without agreeing evidence."""
-        params = self._params
-        cloud = predict(before, dt_s, params, self._rng)
+        cloud = predict(before, dt_s, self._rng)
         guess = self._guess(cloud)
         sighting = self._evidence.observe(views, guess)
         measured = observations(sighting.parts)
         if sighting.is_complete and is_far(cloud, measured):
             # a face with its distance determines the position, but the particles drifted away from it
-            cloud = cloud_about(measured, cloud, params, self._rng)
-        cloud, log_weight = propose(cloud, measured, params, self._rng)
+            cloud = cloud_about(measured, cloud, self._rng)
+        cloud, log_weight = propose(cloud, measured, self._rng)
         log_weight += self._evidence.log_likelihood(views, cloud, guess.middle_m)
         score_observations(
             np.ascontiguousarray(cloud.place_m), measured.means_m, measured.information,
-            params.outlier, log_weight,
+            _OUTLIER, log_weight,
         )  # fmt: skip
         weight = weights(log_weight)
         middle, covariance = moments(cloud.place_m, weight)
@@ -217,14 +221,14 @@ class HeadTracker:
         self._check_place(views, sighting.boxes, dt_s)
         support = self._evidence.support(views, middle, velocity)
         self._faceless_s = 0.0 if has_face else self._faceless_s + dt_s
-        agrees = has_face or support >= params.least_support
+        agrees = has_face or support >= _LEAST_SUPPORT
         self._unsupported_s = 0.0 if agrees else self._unsupported_s + dt_s
-        lost = self._unsupported_s > params.coast_s or not self._in_reach(middle)
+        lost = self._unsupported_s > _COAST_S or not self._in_reach(middle)
         if lost or self._search.are_swapped:
             self._cloud = None
             return None
         self._evidence.learn(views, middle, velocity, sighting.boxes, dt_s)
-        facing = self._faceless_s <= params.facing_s
+        facing = self._faceless_s <= _FACING_S
         self._yaw_rad = self._evidence.yaw_rad(views, middle, velocity) if facing else None
         return self._track(middle, covariance, sighting.boxes, support)
 
@@ -243,9 +247,9 @@ class HeadTracker:
                 continue
             self._since_check_s = 0.0
             placed = self._search.place(view, box, views)
-            if placed.depth is Depth.MEETING and self._is_head_sized(placed):
+            if placed.depth is Depth.MEETING and placed.is_head_sized:
                 covariance = placed.sigma_along_m**2 * np.eye(3)
-                self._cloud = cloud_at(placed.middle_m, covariance, self._params, self._rng)
+                self._cloud = cloud_at(placed.middle_m, covariance, self._rng)
 
     def _track(
         self,
@@ -283,13 +287,13 @@ class HeadTracker:
             away_m = float(np.linalg.norm(centre(camera) - middle))
             x, y = project(camera, middle)
             inside = 0 <= x < camera.size_px[0] and 0 <= y < camera.size_px[1]
-            if inside and 0.5 * self._params.nearest_m < away_m < 1.3 * self._params.farthest_m:
+            if inside and 0.5 * NEAREST_M < away_m < 1.3 * FARTHEST_M:
                 return True
         return False
 
     def _is_doubtful(self, track: HeadTrack | None) -> bool:
         """True if the tracked object may be no head."""
-        return track is not None and track.support < self._params.learn_support
+        return track is not None and track.support < LEARN_SUPPORT
 
     def _hand_over(self, track: HeadTrack | None, views: Sequence[HeadView]) -> None:
         """Switch to another face when the tracked head has had none for long and the other is as near."""

@@ -22,7 +22,6 @@ from mocapd.published.hecht2009.head.head_cloud import (
     weights,
 )
 from mocapd.published.hecht2009.head.head_colours import initial_colours, light_gain, update_colours
-from mocapd.published.hecht2009.head.head_params import HeadParams
 from mocapd.published.hecht2009.head.head_particle_kernels import score_heads, score_observations
 from mocapd.published.hecht2009.head.head_samples import INSIDE, OUTLINE
 from mocapd.published.hecht2009.head.head_shape import ellipse_of, head_size
@@ -30,18 +29,18 @@ from mocapd.types import Bytes, Camera, Floats, Singles
 from tests.published.hecht2009.head.ball_scene import Ball, camera, picture
 
 MIDDLE = np.array([0.1, 1.5, -0.2])
-MANY = HeadParams(particles=4000)
+MANY = 4000
 
 
 def cloud(sd_m: float = 0.03, seed: int = 0) -> Cloud:
-    return cloud_at(MIDDLE, sd_m**2 * np.eye(3), MANY, np.random.default_rng(seed))
+    return cloud_at(MIDDLE, sd_m**2 * np.eye(3), np.random.default_rng(seed), MANY)
 
 
 @given(dt_s=st.floats(0.005, 0.2))
 @settings(max_examples=20)
 def test_a_cloud_moves_with_its_velocity_and_spreads(dt_s: float) -> None:
     before = Cloud(cloud().place_m, np.tile([1.0, 0.0, -0.5], (4000, 1)))
-    after = predict(before, dt_s, MANY, np.random.default_rng(1))
+    after = predict(before, dt_s, np.random.default_rng(1))
     moved = after.place_m.mean(axis=0) - before.place_m.mean(axis=0)
     assert np.allclose(moved, dt_s * np.array([1.0, 0.0, -0.5]), atol=0.003 + 0.1 * dt_s**2 * 8)
     assert (after.place_m.std(axis=0) > before.place_m.std(axis=0)).all()
@@ -72,7 +71,7 @@ def test_particles_drawn_at_the_measurements_stand_for_the_same_cloud(
     seen = observations([along_ray(eye, ray, 0.03)])
     rng = np.random.default_rng(seed)
     before = cloud(0.04, seed)
-    after, log_weight = propose(before, seen, MANY, rng)
+    after, log_weight = propose(before, seen, rng)
     assert not np.array_equal(after.place_m, before.place_m)
     mean, covariance = moments(after.place_m, weights(log_weight))
     assert np.allclose(mean, MIDDLE, atol=0.006)
@@ -92,7 +91,7 @@ def test_a_cloud_far_from_its_measurements_is_drawn_anew_there() -> None:
     near = observations([(MIDDLE, np.eye(3) / 0.02**2)])
     assert is_far(cloud(), seen)
     assert not is_far(cloud(), near)
-    anew = cloud_about(seen, cloud(), MANY, np.random.default_rng(0))
+    anew = cloud_about(seen, cloud(), np.random.default_rng(0))
     assert np.allclose(anew.place_m.mean(axis=0), there, atol=0.005)
 
 
@@ -125,6 +124,6 @@ def _scores(
     size, out = head_size(1.75), np.empty(len(middles))
     score_heads(
         np.ascontiguousarray(middles), np.array([size.width_m, size.height_m]), INSIDE, OUTLINE,
-        camera_arrays(of), pixels, odds, gain, np.zeros((0, 0), np.uint8), up, 0.5, 30.0, out,
+        camera_arrays(of), pixels, odds, gain, np.zeros((0, 0), np.uint8), up, out,
     )  # fmt: skip
     return out
