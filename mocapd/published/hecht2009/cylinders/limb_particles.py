@@ -17,9 +17,9 @@ from mocapd.published.hecht2009.cylinders.limb_score import (
 from mocapd.published.hecht2009.cylinders.particle_kernels import (
     NoiseDraws,
     motion_at,
-    resample,
     scatter,
 )
+from mocapd.published.hecht2009.resampling import normalised_weights, resample
 from mocapd.types import Floats
 
 Constrain = Callable[[Floats], Floats]  # points (N,3,3) to the nearest that the body allows [m]
@@ -88,13 +88,6 @@ def predict(
     return points
 
 
-def weigh(log_scores: Floats) -> Floats:
-    """Weights (N,) that sum to 1, of logarithms of likelihoods (N,)."""
-    weights = np.exp(log_scores - log_scores.max())
-    out: Floats = weights / weights.sum()
-    return out
-
-
 def sum_up(points_m: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """Mean (3,3) [m], and variance (3,) [m^2] of each point, the mean over the axes; points (N,3,3), weights (N,)."""
     mean = np.tensordot(weights, points_m, axes=1)
@@ -121,9 +114,8 @@ def step_cloud(
     if constrain is not None:
         points = constrain(points)
     penalties = limb_penalties(points, radii_m, parts, views, score)
-    weights = weigh(log_scores(penalties, cloud.usual, views, score))
+    weights = normalised_weights(log_scores(penalties, cloud.usual, views, score))
     usual = learn_usual(cloud.usual, penalties, weights, views, dt_s, score)
     mean, variance = sum_up(points, weights)
-    chosen = np.empty(len(points), np.int64)
-    resample(weights, rng.random(), chosen)
+    chosen = resample(weights, rng.random(), len(points))
     return LimbCloud(points[chosen], cloud.points_m[chosen], dt_s, mean, variance, usual)

@@ -81,20 +81,3 @@ def scatter(
                 sd = np.sqrt(variance[n, i])
                 for a in range(3):
                     points[n, i, a] += sd * spread[n, i, a]
-
-
-@kernel
-def resample(weights: Array, start: float, out: NDArray[np.int64]) -> None:
-    """Systematic resampling: out (M,) indices into weights (N,), which sum to 1; start in 0..1, the only random number.
-
-    Index n comes floor(M w) or ceil(M w) times, M w times on average. [Kitagawa 1996; Douc and Cappé 2005]
-    """
-    m = out.shape[0]
-    last = weights.shape[0] - 1
-    n, reached = 0, weights[0]
-    for k in range(m):
-        place = (k + start) / m
-        while reached <= place and n < last:
-            n += 1
-            reached += weights[n]
-        out[k] = n

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mocapd.published.hecht2009.resampling import resample
 from mocapd.types import Floats
 
 _SD_FLOOR_M = 0.004  # of the cloud along any direction, so that its density can be written down
@@ -142,15 +143,7 @@ def _log_density(place_m: Floats, mean_m: Floats, covariance_m2: Floats) -> Floa
     return np.asarray(-0.5 * far2 - 0.5 * np.log(np.linalg.det(covariance_m2)))
 
 
-def weights(log_weight: Floats) -> Floats:
-    """Normalised weights from logarithms (P,)."""
-    w = np.exp(log_weight - log_weight.max())
-    return np.asarray(w / w.sum())
-
-
-def resample(cloud: Cloud, weight: Floats, rng: np.random.Generator) -> Cloud:
-    """The same number of particles with equal weights, by systematic resampling."""
-    n = len(weight)
-    at = (rng.random() + np.arange(n)) / n
-    chosen = np.minimum(np.searchsorted(np.cumsum(weight), at), n - 1)
+def resampled(cloud: Cloud, weight: Floats, rng: np.random.Generator) -> Cloud:
+    """The same number of particles with equal weights."""
+    chosen = resample(weight, rng.random(), len(weight))
     return Cloud(cloud.place_m[chosen], cloud.velocity_m_s[chosen])

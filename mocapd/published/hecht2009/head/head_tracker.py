@@ -25,8 +25,7 @@ from mocapd.published.hecht2009.head.head_cloud import (
     observations,
     predict,
     propose,
-    resample,
-    weights,
+    resampled,
 )
 from mocapd.published.hecht2009.head.head_evidence import HeadEvidence, HeadGuess
 from mocapd.published.hecht2009.head.head_outline import outlined_head
@@ -44,6 +43,7 @@ from mocapd.published.hecht2009.head.head_track import (
     StereoFault,
 )
 from mocapd.published.hecht2009.head.head_views import HeadView, have_baseline, head_views
+from mocapd.published.hecht2009.resampling import normalised_weights
 from mocapd.types import Camera, Floats
 
 _OUTLIER = 0.02  # share of measurements that are of something else
@@ -213,10 +213,10 @@ class HeadTracker:
             np.ascontiguousarray(cloud.place_m), measured.means_m, measured.information,
             _OUTLIER, log_weight,
         )  # fmt: skip
-        weight = weights(log_weight)
+        weight = normalised_weights(log_weight)
         middle, covariance = moments(cloud.place_m, weight)
         velocity = weight @ cloud.velocity_m_s
-        self._cloud = resample(cloud, weight, self._rng)
+        self._cloud = resampled(cloud, weight, self._rng)
         has_face = any(box is not None for box in sighting.boxes)
         self._check_place(views, sighting.boxes, dt_s)
         support = self._evidence.support(views, middle, velocity)

@@ -18,12 +18,11 @@ from mocapd.published.hecht2009.cylinders.limb_particles import (
     start_cloud,
     step_cloud,
     sum_up,
-    weigh,
 )
 from mocapd.published.hecht2009.cylinders.limb_score import LimbView
 from mocapd.published.hecht2009.cylinders.occlusion import allocate_occlusion
-from mocapd.published.hecht2009.cylinders.particle_kernels import resample
 from mocapd.published.hecht2009.cylinders.work_camera import work_camera
+from mocapd.published.hecht2009.resampling import normalised_weights, resample
 from mocapd.types import Floats
 from tests.published.hecht2009.cylinders.naive import (
     ENDS_M,
@@ -131,30 +130,26 @@ def test_each_particle_is_drawn_as_often_as_it_weighs(
     raw: list[float], start: float, m: int
 ) -> None:
     weights = (np.array(raw) + 1e-3) / (np.array(raw) + 1e-3).sum()
-    chosen = np.empty(m, np.int64)
-    resample(weights, start, chosen)
-    count = np.bincount(chosen, minlength=len(weights))
+    count = np.bincount(resample(weights, start, m), minlength=len(weights))
     assert (count >= np.floor(m * weights - 1e-9)).all()
     assert (count <= np.ceil(m * weights + 1e-9)).all()
 
 
 def test_resampling_is_unbiased() -> None:
-    weights = weigh(np.random.default_rng(2).normal(0.0, 2.0, 23))
+    weights = normalised_weights(np.random.default_rng(2).normal(0.0, 2.0, 23))
     count = np.zeros(23)
-    chosen = np.empty(10, np.int64)
     starts = (np.arange(2000) + 0.5) / 2000
     for start in starts:
-        resample(weights, start, chosen)
-        count += np.bincount(chosen, minlength=23)
+        count += np.bincount(resample(weights, start, 10), minlength=23)
     assert count / len(starts) == pytest.approx(10 * weights, abs=2e-3)
 
 
 def test_weights_are_likelihoods_whatever_their_constant() -> None:
     log_scores = np.array([-1000.0, -1001.0, -1800.0])
-    weights = weigh(log_scores)
+    weights = normalised_weights(log_scores)
     assert weights.sum() == pytest.approx(1.0)
     assert weights[0] / weights[1] == pytest.approx(np.e)
-    assert weights == pytest.approx(weigh(log_scores + 5000.0))
+    assert weights == pytest.approx(normalised_weights(log_scores + 5000.0))
 
 
 def test_mean_and_variance_are_those_of_the_weighted_points() -> None:

@@ -18,13 +18,13 @@ from mocapd.published.hecht2009.head.head_cloud import (
     observations,
     predict,
     propose,
-    resample,
-    weights,
+    resampled,
 )
 from mocapd.published.hecht2009.head.head_colours import initial_colours, light_gain, update_colours
 from mocapd.published.hecht2009.head.head_particle_kernels import score_heads, score_observations
 from mocapd.published.hecht2009.head.head_samples import INSIDE, OUTLINE
 from mocapd.published.hecht2009.head.head_shape import ellipse_of, head_size
+from mocapd.published.hecht2009.resampling import normalised_weights
 from mocapd.types import Bytes, Camera, Floats, Singles
 from tests.published.hecht2009.head.ball_scene import Ball, camera, picture
 
@@ -73,7 +73,7 @@ def test_particles_drawn_at_the_measurements_stand_for_the_same_cloud(
     before = cloud(0.04, seed)
     after, log_weight = propose(before, seen, rng)
     assert not np.array_equal(after.place_m, before.place_m)
-    mean, covariance = moments(after.place_m, weights(log_weight))
+    mean, covariance = moments(after.place_m, normalised_weights(log_weight))
     assert np.allclose(mean, MIDDLE, atol=0.006)
     assert np.allclose(np.sqrt(np.diag(covariance)), 0.04, rtol=0.12)
 
@@ -81,7 +81,7 @@ def test_particles_drawn_at_the_measurements_stand_for_the_same_cloud(
 def test_resampling_keeps_particles_in_proportion_to_their_weight() -> None:
     before = Cloud(np.arange(12.0).reshape(4, 3), np.zeros((4, 3)))
     weight = np.array([0.5, 0.25, 0.25, 0.0])
-    kept = resample(before, weight, np.random.default_rng(0)).place_m[:, 0]
+    kept = resampled(before, weight, np.random.default_rng(0)).place_m[:, 0]
     assert sorted(kept.tolist()) == [0.0, 0.0, 3.0, 6.0]
 
 
