@@ -32,7 +32,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.work_size import image_scales
 from mocapd.published.wang2011.classify_kernels import sum_colours
-from mocapd.published.wang2011.distance_maps import DistanceMaps
+from mocapd.published.wang2011.distance_maps import distance_maps
 from mocapd.shirt.colour.colour_model import ColourModel, fold
 from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.shirt.colour.white_balance import solve_white_balance
@@ -133,8 +133,7 @@ def _roc(
     whitening = fold(segmenter.colours, segmenter.W)
     rows, columns = np.nonzero(rendered)
     side_px = 1 + max(np.ptp(rows), np.ptp(columns))
-    maps = DistanceMaps.allocate(*rendered.shape)
-    distance_px = maps.fill(rendered, float(sum(rendered.shape)))
+    distance_px, _ = distance_maps(rendered, float(sum(rendered.shape)))
     return Roc(
         sweep_alone(truth, picture, roi, whitening),
         sweep_assisted(truth, picture, roi, whitening, distance_px, _PRIOR_WEIGHT / side_px),

@@ -22,7 +22,7 @@ from mocapd.body.model import BodyModel, build_model, shaped
 from mocapd.body.posing_kernels import difference
 from mocapd.body.shape import FACTOR_SD
 from mocapd.geometry import rotations
-from mocapd.published.wang2011.distance_maps import DistanceMaps
+from mocapd.published.wang2011.distance_maps import distance_maps
 from mocapd.published.wang2011.drawing import (
     Grid,
     PatchRenderer,
@@ -172,13 +172,12 @@ def observe(
     count, centroid = np.empty(N_AREAS), np.empty((N_AREAS, 2))
     for name, g in guesses.items():
         grid = sights[name].grid
-        maps = DistanceMaps.allocate(grid.height, grid.width, nearest=True)
         rendered = np.empty((grid.height, grid.width), np.uint8)
         drawing = draw(model, blended, g.camera, grid)
         label_triangles(drawing.triangle_at, shirt_labels(model).label, rendered)
-        maps.fill(rendered, _REACH)
+        _, nearest_yx = distance_maps(rendered, _REACH)
         classified_patches(
-            sights[name].ids, maps.nearest_yx, drawing.triangle_at, model.area, count, centroid
+            sights[name].ids, nearest_yx, drawing.triangle_at, model.area, count, centroid
         )
         truth = draw(model, assumed, g.camera, grid)
         both = (count >= params.min_patch_samples) & (truth.count >= params.min_patch_samples)

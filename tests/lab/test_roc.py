@@ -25,7 +25,7 @@ from mocapd.fit.motion_state import (
 )
 from mocapd.fit.solver import Fitter
 from mocapd.geometry.rotations import IDENTITY_XYZW, exp
-from mocapd.published.wang2011.distance_maps import DistanceMaps
+from mocapd.published.wang2011.distance_maps import distance_maps
 from mocapd.session.offline import RecordedTrack
 from mocapd.shirt.colour.colour_model import ColourModel, fold
 from mocapd.shirt.garment import shirt_labels
@@ -99,7 +99,7 @@ def test_the_prior_classifies_more_at_fewer_false_positives() -> None:
     alone = sweep_alone(truth, picture, roi, whitening)
     # the pose is right to a pixel or two
     rendered = np.roll(truth, (1, 2), axis=(0, 1))
-    distance_px = DistanceMaps.allocate(*truth.shape).fill(rendered, 100.0)
+    distance_px, _ = distance_maps(rendered, 100.0)
     assisted = sweep_assisted(truth, picture, roi, whitening, distance_px, 6.0 / 20.0)
     for counts in (alone, assisted):
         assert counts.shirt == 400.0

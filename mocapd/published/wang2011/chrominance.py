@@ -41,23 +41,20 @@ class Colourful:
 class HistogramSearch:
     """Buffers for frames of one size, without state between frames. One thread."""
 
-    def __init__(self, size_px: tuple[int, int], params: HistogramParams | None = None) -> None:
-        self.params = params or HistogramParams()
+    def __init__(self, size_px: tuple[int, int], params: HistogramParams) -> None:
+        self.params = params
         step = self.params.step_px
         width, height = size_px[0] // step, size_px[1] // step
-        self._everything = np.ones((1, 1), dtype=np.uint8)
         self._bins = np.empty((height, width), dtype=np.uint8)
         self._integral = np.empty((height + 1, width + 1, BINS), dtype=np.uint16)
         self._radii: NDArray[np.int64] = np.array(self.params.radii, dtype=np.int64)
         self._u: Singles = np.empty((len(self._radii), height, width), dtype=np.float32)
 
-    def search(self, pixels: Bytes, mask: Bytes | None = None, mask_shift: int = 0) -> Colourful:
+    def search(self, pixels: Bytes, mask: Bytes, mask_shift: int) -> Colourful:
         """The colourful place of `pixels` (H,W,3) uint8 BGR.
 
         `mask`: foreground hint, non-zero where to look, 2^mask_shift times smaller than the frame.
         """
-        if mask is None:
-            mask, mask_shift = self._everything, 31
         params = self.params
         chrominance_bins(pixels, mask, mask_shift, params.step_px, params.min_sum, self._bins)
         integral_histogram(self._bins, self._integral)

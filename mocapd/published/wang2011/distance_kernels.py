@@ -54,7 +54,6 @@ def nearest_rows(
 def distance_maps(
     ids: NDArray[np.uint8],
     limit_px: float,
-    nearest_row: NDArray[np.int32],
     distance_px: NDArray[np.float32],
     nearest_yx: NDArray[np.int16],
 ) -> None:
@@ -62,10 +61,9 @@ def distance_maps(
 
     Truncated at `limit_px`, which is also the value where the colour is absent; nearest_yx
     (10,h,w,2): row and column of that nearest sample, NO_SAMPLE where the distance is truncated.
-    Pass nearest_yx with h = 0 to leave it out. nearest_row (h,w) int32 is scratch.
     """
     h, w = ids.shape
-    wanted = nearest_yx.shape[1] > 0
+    nearest_row = np.empty((h, w), dtype=np.int32)
     boxes = np.empty((distance_px.shape[0] + 1, 4), dtype=np.int64)
     columns = np.empty(w, dtype=np.int32)  # parabolas of the lower envelope
     begins = np.empty(w + 1, dtype=np.float32)  # where each begins to be the lowest
@@ -74,8 +72,7 @@ def distance_maps(
     reach = int(min(np.ceil(limit_px), h + w))
     bounding_boxes(ids, boxes)
     distance_px[:] = np.float32(limit_px)
-    if wanted:
-        nearest_yx[:] = NO_SAMPLE
+    nearest_yx[:] = NO_SAMPLE
     for k in range(distance_px.shape[0]):
         box = boxes[k + 1]
         if box[2] < box[0]:
@@ -116,6 +113,5 @@ def distance_maps(
                 distance2 = heights[part] + np.float32(across * across)
                 if distance2 < limit2:
                     distance_px[k, y, x] = np.sqrt(distance2)
-                    if wanted:
-                        nearest_yx[k, y, x, 0] = rows[columns[part]]
-                        nearest_yx[k, y, x, 1] = columns[part]
+                    nearest_yx[k, y, x, 0] = rows[columns[part]]
+                    nearest_yx[k, y, x, 1] = columns[part]

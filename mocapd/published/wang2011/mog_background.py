@@ -32,8 +32,8 @@ def mask_size(size_px: tuple[int, ...], shift: int) -> tuple[int, int]:
 class BackgroundSubtractor:
     """The background of one camera. It learns from every frame it is given; one thread."""
 
-    def __init__(self, params: MixtureParams | None = None) -> None:
-        self.params = params or MixtureParams()
+    def __init__(self, params: MixtureParams) -> None:
+        self.params = params
         self.reset()
 
     def reset(self) -> None:
@@ -44,15 +44,14 @@ class BackgroundSubtractor:
             detectShadows=False,
         )
 
-    def apply(self, pixels: Bytes, learning_rate: float = -1.0) -> Bytes:
+    def apply(self, pixels: Bytes) -> Bytes:
         """The mask uint8 of `pixels` (H,W,3): 0 background, 255 foreground; of the size `mask_size`.
 
-        learning_rate: 0 does not learn, 1 replaces the model by this frame, negative: automatic by
-        `history`. The first frame after a reset has no foreground.
+        The first frame after a reset has no foreground.
         """
         step = 1 << self.params.shift
         small = np.ascontiguousarray(pixels[step // 2 :: step, step // 2 :: step])
-        mask = self._mixture.apply(small, learningRate=learning_rate)
+        mask = self._mixture.apply(small)
         if self.params.grow > 0:
             size = 2 * self.params.grow + 1
             mask = cv2.dilate(mask, np.ones((size, size), dtype=np.uint8))

@@ -19,7 +19,7 @@ from mocapd.clock import seconds
 from mocapd.geometry import rotations
 from mocapd.published.wang2011.centroid_ik import CentroidSolver, Target
 from mocapd.published.wang2011.covariances import load_covariances
-from mocapd.published.wang2011.distance_maps import DistanceMaps
+from mocapd.published.wang2011.distance_maps import distance_maps
 from mocapd.published.wang2011.drawing import PatchRenderer, Posture, draw, posture
 from mocapd.published.wang2011.params import Params
 from mocapd.published.wang2011.patch_kernels import classified_patches
@@ -215,15 +215,12 @@ class Wang2011Tracker:
         drawing = draw(self._model, blended, segmenter.camera, grid)
         rendered = np.empty((grid.height, grid.width), np.uint8)
         label_triangles(drawing.triangle_at, self._colour, rendered)
-        maps = DistanceMaps.allocate(grid.height, grid.width, nearest=True)
         # farther away than this the prior alone exceeds the threshold
         reach = params.prior_threshold / params.prior_weight * sight.size_px / grid.stride
-        distance = maps.fill(rendered, reach)
+        distance, nearest_yx = distance_maps(rendered, reach)
         ids = segmenter.refine(pixels, sight, distance) if params.pose_prior else sight.ids
         count, centroid = np.empty(N_AREAS), np.empty((N_AREAS, 2))
-        classified_patches(
-            ids, maps.nearest_yx, drawing.triangle_at, self._model.area, count, centroid
-        )
+        classified_patches(ids, nearest_yx, drawing.triangle_at, self._model.area, count, centroid)
         wanted = count >= params.min_patch_samples
         wanted[0] = False
         return Target(segmenter.camera, grid, grid.to_pixels(centroid), wanted), ids

@@ -102,7 +102,9 @@ def room_with_shirt(x: int, y: int) -> Bytes:
 
 @pytest.mark.parametrize(("x", "y"), [(150, 150), (480, 300), (80, 400)])
 def test_the_shirt_is_found(x: int, y: int) -> None:
-    found = HistogramSearch((640, 480)).search(room_with_shirt(x, y))
+    found = HistogramSearch((640, 480), HistogramParams()).search(
+        room_with_shirt(x, y), np.ones((1, 1), np.uint8), 31
+    )
     assert np.hypot(found.x_px - x, found.y_px - y) < 20
     assert 54 <= found.s_px <= 200
     assert found.u_max > 0.6
@@ -113,7 +115,7 @@ def test_a_mask_rules_out_a_colourful_background() -> None:
     image[200:440, 400:620] = np.random.default_rng(4).integers(0, 256, (240, 220, 3))
     mask = np.zeros((120, 160), dtype=np.uint8)
     mask[20:55, 20:55] = 255
-    found = HistogramSearch((640, 480)).search(image, mask, 2)
+    found = HistogramSearch((640, 480), HistogramParams()).search(image, mask, 2)
     assert np.hypot(found.x_px - 150, found.y_px - 150) < 20
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mocapd.published.wang2011.distance_maps import DistanceMaps
+from mocapd.published.wang2011.distance_maps import distance_maps
 from mocapd.types import Bytes
 from tests.published.wang2011 import naive
 
@@ -28,27 +28,22 @@ def test_distances_are_those_of_the_nearest_sample(
     h: int, w: int, seed: int, limit_px: float
 ) -> None:
     ids = blobs(h, w, seed)
-    maps = DistanceMaps.allocate(h, w)
-    np.testing.assert_allclose(
-        maps.fill(ids, limit_px), naive.distance_maps(ids, limit_px), atol=1e-4
-    )
+    distance_px, _ = distance_maps(ids, limit_px)
+    np.testing.assert_allclose(distance_px, naive.distance_maps(ids, limit_px), atol=1e-4)
 
 
 @pytest.mark.parametrize("limit_px", [6.0, 1e4])
 def test_the_nearest_sample_is_where_it_says(limit_px: float) -> None:
     ids = blobs(30, 40, 7)
-    maps = DistanceMaps.allocate(30, 40, nearest=True)
-    distance = maps.fill(ids, limit_px)
+    distance, nearest_yx = distance_maps(ids, limit_px)
     k, y, x = np.nonzero(distance < limit_px)
-    ny, nx = maps.nearest_yx[k, y, x].T
+    ny, nx = nearest_yx[k, y, x].T
     assert (ids[ny, nx] == k + 1).all()
     np.testing.assert_allclose(np.hypot(y - ny, x - nx), distance[k, y, x], atol=1e-4)
-    assert (maps.nearest_yx[distance >= limit_px] == -1).all()
+    assert (nearest_yx[distance >= limit_px] == -1).all()
 
 
-def test_a_second_map_forgets_the_first() -> None:
-    maps = DistanceMaps.allocate(30, 40, nearest=True)
-    maps.fill(blobs(30, 40, 1), 1e4)
-    nothing = np.zeros((30, 40), dtype=np.uint8)
-    assert (maps.fill(nothing, 12.0) == 12.0).all()
-    assert (maps.nearest_yx == -1).all()
+def test_of_an_absent_colour_all_is_far() -> None:
+    distance_px, nearest_yx = distance_maps(np.zeros((30, 40), dtype=np.uint8), 12.0)
+    assert (distance_px == 12.0).all()
+    assert (nearest_yx == -1).all()
