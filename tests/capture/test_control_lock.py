@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from mocapd.capture.webcam.camera_controls import Control, NodeControls
 from mocapd.capture.webcam.control_lock import exposure_units, lock, read_held, restore, set_free
-from mocapd.capture.webcam.controls import Controls, apply_unknown_to_opencv
+from mocapd.capture.webcam.controls import Controls, apply_controls, control_steps
 from mocapd.capture.webcam.usb_bandwidth import Mode, crowded_buses, lower_mode, usable_bytes_per_s
 from mocapd.capture.webcam.v4l2_ioctl import ControlRange, PixelFormat
 from mocapd.errors import ConfigError, UnavailableError
@@ -23,10 +23,11 @@ HELD = {
     Control.POWER_LINE: 2,
 }
 UNDER = {Control.EXPOSURE: (Control.AUTO_EXPOSURE, 1), Control.WB_TEMPERATURE: (Control.AUTO_WB, 0)}
+LIMITS = {Control.GAIN: 255}
 
 
 class StrictDevice:
-    """Without focus; refuses values under their automatic, and notes each write."""
+    """Without focus; clips, refuses values under their automatic, and notes each write."""
 
     def __init__(self, **changed: int) -> None:
         self.held = {**HELD, **{Control[name]: value for name, value in changed.items()}}
@@ -43,7 +44,7 @@ class StrictDevice:
         if control not in self.held or (switch is not None and self.held[switch] != manual):
             self.refused.append(control)
         else:
-            self.held[control] = value
+            self.held[control] = min(value, LIMITS.get(control, value))
         return self.held.get(control)
 
 
@@ -98,17 +99,32 @@ def test_exposures_fit_in_a_frame_and_in_the_pulses_of_the_mains(
         assert units == wanted
 
 
-def test_what_opencv_does_not_know_is_set_and_read_back() -> None:
+def test_values_take_effect_because_the_automatic_goes_off_first() -> None:
+    device = StrictDevice()
+    results = apply_controls(device, Controls(exposure=100, wb_temperature=5000))
+    assert all(one.is_applied for one in results)
+    assert device.held[Control.EXPOSURE] == 100
+    assert device.held[Control.WB_TEMPERATURE] == 5000
+    assert device.refused == []
+
+
+def test_what_was_not_applied_shows() -> None:
     device = StrictDevice()
     del device.held[Control.POWER_LINE]
-    results = apply_unknown_to_opencv(
-        device, Controls(dynamic_framerate=False, power_line_hz=50, gain=3)
-    )
-    assert {one.name: (one.asked, one.got) for one in results} == {
-        "dynamic_framerate": (0, 0),
-        "power_line_hz": (1, -1.0),
+    wanted = Controls(gain=999, focus=30, dynamic_framerate=False, power_line_hz=50)
+    results = apply_controls(device, wanted)
+    assert {one.name: (one.asked, one.got) for one in results if not one.is_applied} == {
+        "gain": (999, 255),
+        "autofocus": (0, -1),
+        "focus": (30, -1),
+        "power_line_hz": (1, -1),
     }
-    assert device.held[Control.GAIN] == 10
+    assert device.held[Control.DYNAMIC_FRAMERATE] == 0
+
+
+def test_nothing_is_touched_without_being_asked_for() -> None:
+    assert control_steps(Controls()) == {}
+    assert control_steps(Controls(auto_exposure=True)) == {"auto_exposure": 3}
 
 
 def test_a_mains_of_55_hz_is_refused() -> None:

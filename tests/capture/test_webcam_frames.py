@@ -2,7 +2,6 @@
 
 import resource
 import tracemalloc
-from collections.abc import Mapping
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -12,7 +11,6 @@ import pytest
 
 from mocapd.capture.camera_thread.rate import RateMeter
 from mocapd.capture.webcam import v4l2
-from mocapd.capture.webcam.controls import Controls, apply_controls, control_steps
 from mocapd.capture.webcam.v4l2 import WebcamSettings, decode, negotiate
 from mocapd.errors import ConfigError, UnavailableError
 from mocapd.types import Bytes, Frame
@@ -92,7 +90,7 @@ def test_yuyv_is_converted_and_a_short_buffer_is_torn() -> None:
 
 
 class StubbornCamera:
-    """Takes values as the UVC cameras measured do: says yes to all, clips, ignores values under auto."""
+    """Takes values as the UVC cameras measured do: says yes to all, and clips."""
 
     def __init__(self, fourcc: str = "MJPG", unplugged: bool = False) -> None:
         self.asked: list[int] = []
@@ -103,29 +101,15 @@ class StubbornCamera:
             cv2.CAP_PROP_FRAME_HEIGHT: 480.0,
             cv2.CAP_PROP_FPS: 30.0,
             cv2.CAP_PROP_BUFFERSIZE: 4.0,
-            cv2.CAP_PROP_AUTO_EXPOSURE: 3.0,
-            cv2.CAP_PROP_EXPOSURE: 250.0,
-            cv2.CAP_PROP_AUTO_WB: 1.0,
-            cv2.CAP_PROP_WB_TEMPERATURE: 4000.0,
-            cv2.CAP_PROP_GAIN: 0.0,
         }
         self._limits = {
             cv2.CAP_PROP_FRAME_WIDTH: 640.0,
             cv2.CAP_PROP_FRAME_HEIGHT: 480.0,
             cv2.CAP_PROP_FPS: 30.0,
-            cv2.CAP_PROP_GAIN: 255.0,
-        }
-        self._under: Mapping[int, tuple[int, float]] = {
-            cv2.CAP_PROP_EXPOSURE: (cv2.CAP_PROP_AUTO_EXPOSURE, 1.0),
-            cv2.CAP_PROP_WB_TEMPERATURE: (cv2.CAP_PROP_AUTO_WB, 0.0),
         }
 
     def set(self, property_id: int, value: float) -> bool:
         self.asked.append(property_id)
-        if property_id in self._under:
-            automatic, manual = self._under[property_id]
-            if self.held[automatic] != manual:
-                return True
         if property_id in self.held and property_id != cv2.CAP_PROP_FOURCC:  # it has only one
             self.held[property_id] = min(value, self._limits.get(property_id, value))
         return not self._unplugged
@@ -183,7 +167,8 @@ def test_the_format_is_asked_for_before_the_size_and_the_size_before_the_rate() 
         cv2.CAP_PROP_FRAME_HEIGHT,
         cv2.CAP_PROP_FPS,
     ]
-    assert (got.fourcc, got.size_px, got.fps_hz, got.buffers) == ("MJPG", (640, 480), 30.0, 1)
+    assert (got.fourcc, got.size_px, got.fps_hz) == ("MJPG", (640, 480), 30.0)
+    assert camera.held[cv2.CAP_PROP_BUFFERSIZE] == 1.0
 
 
 def test_what_is_read_back_counts_and_not_what_was_asked() -> None:
@@ -207,28 +192,6 @@ def test_a_webcam_unplugged_while_it_is_opened_is_sought_again() -> None:
 def test_a_webcam_of_another_format_is_refused() -> None:
     with pytest.raises(UnavailableError, match="'GREY'"):
         negotiate(StubbornCamera("GREY"), WebcamSettings(), "left", NODE, moved=False)
-
-
-def test_values_take_effect_because_the_automatic_goes_off_first() -> None:
-    camera = StubbornCamera()
-    results = apply_controls(camera, Controls(exposure=100, wb_temperature=5000))
-    assert all(one.is_applied for one in results)
-    assert camera.held[cv2.CAP_PROP_EXPOSURE] == 100.0
-    assert camera.held[cv2.CAP_PROP_WB_TEMPERATURE] == 5000.0
-
-
-def test_what_was_not_applied_shows_though_set_said_yes() -> None:
-    results = apply_controls(StubbornCamera(), Controls(gain=999, focus=30))
-    assert {one.name: (one.asked, one.got) for one in results if not one.is_applied} == {
-        "gain": (999.0, 255.0),
-        "autofocus": (0.0, -1.0),
-        "focus": (30.0, -1.0),
-    }
-
-
-def test_nothing_is_touched_without_being_asked_for() -> None:
-    assert control_steps(Controls()) == ()
-    assert [value for _, _, value in control_steps(Controls(auto_exposure=True))] == [3.0]
 
 
 def test_the_rate_is_that_of_the_last_seconds() -> None:

@@ -6,20 +6,27 @@ opening.
 """
 
 from dataclasses import dataclass
-from typing import Protocol
 
 from mocapd.capture.webcam.camera_controls import Control, ControlDevice, power_line_code
 from mocapd.errors import ConfigError
 
-_EXPOSURE_MANUAL = 1.0
-_EXPOSURE_AUTO = 3.0
-
-
-class HasProperties(Protocol):
-    """The required part of cv2.VideoCapture."""
-
-    def set(self, property_id: int, value: float) -> bool: ...
-    def get(self, property_id: int) -> float: ...
+# the field of each automatic, its codes for off and on, and the field of its value
+_AUTOMATICS = (
+    ("auto_exposure", (1, 3), "exposure"),
+    ("auto_wb", (0, 1), "wb_temperature"),
+    ("autofocus", (0, 1), "focus"),
+)
+_CONTROLS = {
+    "auto_exposure": Control.AUTO_EXPOSURE,
+    "exposure": Control.EXPOSURE,
+    "gain": Control.GAIN,
+    "auto_wb": Control.AUTO_WB,
+    "wb_temperature": Control.WB_TEMPERATURE,
+    "autofocus": Control.AUTOFOCUS,
+    "focus": Control.FOCUS,
+    "dynamic_framerate": Control.DYNAMIC_FRAMERATE,
+    "power_line_hz": Control.POWER_LINE,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,70 +63,38 @@ class ControlResult:
     """A control's requested and actual value; `got` is -1 when the camera lacks the control."""
 
     name: str
-    asked: float
-    got: float
+    asked: int
+    got: int
 
     @property
     def is_applied(self) -> bool:
         return self.asked == self.got
 
 
-def control_steps(controls: Controls) -> tuple[tuple[str, int, float], ...]:
-    """(name, cv2 property, value) in the order to set them: each automatic before its value."""
-    # imported here: the configuration uses Controls and must load without OpenCV
-    import mocapd.capture.environment  # noqa: F401  isort: skip  before cv2
-
-    import cv2
-
-    groups = (
-        (
-            ("auto_exposure", cv2.CAP_PROP_AUTO_EXPOSURE, controls.auto_exposure),
-            (_EXPOSURE_MANUAL, _EXPOSURE_AUTO),
-            ("exposure", cv2.CAP_PROP_EXPOSURE, controls.exposure),
-        ),
-        (
-            ("auto_wb", cv2.CAP_PROP_AUTO_WB, controls.auto_wb),
-            (0.0, 1.0),
-            ("wb_temperature", cv2.CAP_PROP_WB_TEMPERATURE, controls.wb_temperature),
-        ),
-        (
-            ("autofocus", cv2.CAP_PROP_AUTOFOCUS, controls.autofocus),
-            (0.0, 1.0),
-            ("focus", cv2.CAP_PROP_FOCUS, controls.focus),
-        ),
-    )
-    steps: list[tuple[str, int, float]] = []
-    for (auto_name, auto_property, automatic), codes, (name, number, value) in groups:
+def control_steps(controls: Controls) -> dict[str, int]:
+    """The values by name, in the order to set them: each automatic before its value."""
+    steps: dict[str, int] = {}
+    for switch, codes, name in _AUTOMATICS:
+        automatic, value = getattr(controls, switch), getattr(controls, name)
         if automatic is None and value is not None:
             automatic = False
         if automatic is not None:
-            steps.append((auto_name, auto_property, codes[automatic]))
+            steps[switch] = codes[automatic]
         if value is not None and not automatic:
-            steps.append((name, number, float(value)))
+            steps[name] = value
     if controls.gain is not None:
-        steps.append(("gain", cv2.CAP_PROP_GAIN, float(controls.gain)))
-    return tuple(steps)
-
-
-def apply_controls(capture: HasProperties, controls: Controls) -> tuple[ControlResult, ...]:
-    """Sets all given controls, then reads them back."""
-    steps = control_steps(controls)
-    for _, number, value in steps:
-        capture.set(number, value)
-    return tuple(ControlResult(name, value, capture.get(number)) for name, number, value in steps)
-
-
-def apply_unknown_to_opencv(device: ControlDevice, controls: Controls) -> tuple[ControlResult, ...]:
-    """Set what OpenCV has no property for, and read it back. Raises UnavailableError."""
-    asked: list[tuple[str, Control, int]] = []
+        steps["gain"] = controls.gain
     if controls.dynamic_framerate is not None:
-        value = int(controls.dynamic_framerate)
-        asked.append(("dynamic_framerate", Control.DYNAMIC_FRAMERATE, value))
+        steps["dynamic_framerate"] = int(controls.dynamic_framerate)
     if controls.power_line_hz is not None:
-        value = power_line_code(controls.power_line_hz)
-        asked.append(("power_line_hz", Control.POWER_LINE, value))
+        steps["power_line_hz"] = power_line_code(controls.power_line_hz)
+    return steps
+
+
+def apply_controls(device: ControlDevice, controls: Controls) -> tuple[ControlResult, ...]:
+    """Sets all given controls, and reads them back. Raises UnavailableError."""
     results = []
-    for name, control, value in asked:
-        got = device.write(control, value)
-        results.append(ControlResult(name, value, -1.0 if got is None else got))
+    for name, value in control_steps(controls).items():
+        got = device.write(_CONTROLS[name], value)
+        results.append(ControlResult(name, value, -1 if got is None else got))
     return tuple(results)

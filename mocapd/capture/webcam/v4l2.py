@@ -2,8 +2,9 @@
 
 import logging
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Protocol
 
 import mocapd.capture.environment as environment  # isort: skip  before cv2
 
@@ -19,9 +20,7 @@ from mocapd.capture.webcam.camera_controls import NodeControls
 from mocapd.capture.webcam.controls import (
     ControlResult,
     Controls,
-    HasProperties,
     apply_controls,
-    apply_unknown_to_opencv,
 )
 from mocapd.capture.webcam.device_access import check_usable, opened_node
 from mocapd.capture.webcam.frame_numbers import FrameNumbers
@@ -36,6 +35,13 @@ _OLDEST_STAMP_NS = 5 * NS_PER_S  # a driver's stamp older than this is of anothe
 _TORN_LIMIT_NS = 2 * NS_PER_S  # without one whole frame: the cable or the hub is bad
 _MJPG = "MJPG"
 _YUYV = "YUYV"
+
+
+class HasProperties(Protocol):
+    """The required part of cv2.VideoCapture."""
+
+    def set(self, property_id: int, value: float) -> bool: ...
+    def get(self, property_id: int) -> float: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +62,6 @@ class NegotiatedFormat:
     fourcc: str
     size_px: tuple[int, int]
     fps_hz: float
-    buffers: int
-    controls: tuple[ControlResult, ...]
 
 
 class V4l2Source:
@@ -126,8 +130,8 @@ class V4l2Source:
             if not capture.isOpened():
                 raise UnavailableError("OpenCV cannot open it", str(node), "see `mocapd cameras`")
             settings = self._settings
-            got = negotiate(capture, settings, self.name, node, moved)
-            further = apply_unknown_to_opencv(NodeControls(node), settings.controls)
+            negotiated = negotiate(capture, settings, self.name, node, moved)
+            controls = apply_controls(NodeControls(node), settings.controls)
             undo.pop_all()
         if not self._openings.take(
             number, capture
@@ -135,10 +139,10 @@ class V4l2Source:
             raise CameraClosed(
                 "was closed while it was opened", self.name, "it is opened again by itself"
             )
-        self.negotiated = replace(got, controls=got.controls + further)
+        self.negotiated = negotiated
         self._delivered = False
         self._numbers.restart()
-        self._warn(self.negotiated)
+        self._warn(negotiated, controls)
 
     def read(self) -> Frame:
         """The next whole frame; damaged ones are counted and skipped.
@@ -220,7 +224,7 @@ class V4l2Source:
         match, node = find_webcam(self._where, self._others, self._sysfs, self._dev)
         return node, match.moved
 
-    def _warn(self, got: NegotiatedFormat) -> None:
+    def _warn(self, got: NegotiatedFormat, controls: tuple[ControlResult, ...]) -> None:
         if environment.CV2_CAME_FIRST:
             _LOG.warning("%s: cv2 was imported before mocapd: a stall takes 10 s to see", self.name)
         if got.moved:
@@ -231,7 +235,7 @@ class V4l2Source:
             _LOG.warning(
                 "%s: asked for %g Hz, was given %g Hz", self.name, self._settings.fps_hz, got.fps_hz
             )
-        for c in got.controls:
+        for c in controls:
             if not c.is_applied:
                 _LOG.warning("%s: %s is %g, asked for %g", self.name, c.name, c.got, c.asked)
 
@@ -243,7 +247,7 @@ def _other_mode(one: WebcamSettings, other: WebcamSettings) -> bool:
 def negotiate(
     capture: HasProperties, asked: WebcamSettings, name: str, node: Path, moved: bool
 ) -> NegotiatedFormat:
-    """Set format, size, rate, buffers and controls, and read all of it back.
+    """Set format, size and rate, and read them back; one buffer.
 
     Raises UnavailableError (unplugged meanwhile, no usable format) or ConfigError (another size).
     """
@@ -255,7 +259,6 @@ def negotiate(
     capture.set(cv2.CAP_PROP_FPS, asked.fps_hz)
     capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)  # of 4, four would be stale after a pause
     capture.set(cv2.CAP_PROP_CONVERT_RGB, 0)  # we decode: OpenCV hides torn frames
-    controls = apply_controls(capture, asked.controls)
     code, width, height = (
         int(capture.get(number))
         for number in (cv2.CAP_PROP_FOURCC, cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT)
@@ -275,8 +278,6 @@ def negotiate(
         fourcc=fourcc,
         size_px=(width, height),
         fps_hz=capture.get(cv2.CAP_PROP_FPS),
-        buffers=int(capture.get(cv2.CAP_PROP_BUFFERSIZE)),
-        controls=controls,
     )
 
 
