@@ -8,12 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from mocapd.capture.webcam.v4l2_ioctl import (
-    CAP_VIDEO_CAPTURE,
-    Capability,
-    is_streaming_elsewhere,
-    query_capability,
-)
+from mocapd.capture.webcam.v4l2_ioctl import captures_video, is_streaming_elsewhere
 from mocapd.errors import MocapdError, PermissionDeniedError, UnavailableError
 
 PROC = Path("/proc")
@@ -35,15 +30,15 @@ def opened_node(node: Path) -> Iterator[int]:
         os.close(fd)
 
 
-def check_usable(node: Path, fd: int) -> Capability:
+def check_usable(node: Path, fd: int) -> None:
     """Raises UnavailableError when the node does not capture video or is in use."""
     try:
-        capability = query_capability(fd)
+        captures = captures_video(fd)
     except OSError as error:
         if error.errno == errno.ENOTTY:
             raise UnavailableError("not a video node", str(node), "see `mocapd cameras`") from None
         raise UnavailableError(f"does not answer ({error.strerror})", str(node), _REPLUG) from None
-    if not capability.caps & CAP_VIDEO_CAPTURE:
+    if not captures:
         raise UnavailableError(
             "a metadata node: it delivers no pictures",
             str(node),
@@ -53,7 +48,6 @@ def check_usable(node: Path, fd: int) -> Capability:
         raise UnavailableError(
             f"busy: {_holders_text(node)}", str(node), "end that program, or name another camera"
         )
-    return capability
 
 
 _REPLUG = "unplug the camera and plug it in again"

@@ -9,7 +9,7 @@ import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-CAP_VIDEO_CAPTURE = 0x00000001
+_CAP_VIDEO_CAPTURE = 0x00000001
 _CAP_DEVICE_CAPS = 0x80000000
 _BUF_TYPE_VIDEO_CAPTURE = 1
 _MEMORY_MMAP = 1
@@ -42,16 +42,6 @@ _ENUM_FRAMEINTERVALS = _iowr(75, _FRMIVAL.size)
 
 
 @dataclass(frozen=True, slots=True)
-class Capability:
-    """`caps` are those of this node, not of the whole device."""
-
-    driver: str
-    card: str
-    bus: str
-    caps: int
-
-
-@dataclass(frozen=True, slots=True)
 class PixelFormat:
     """One format at one size. `rates_hz` is empty where the driver reports only a range."""
 
@@ -69,16 +59,11 @@ class ControlRange:
     step: int
 
 
-def query_capability(fd: int) -> Capability:
-    """VIDIOC_QUERYCAP. Raises OSError (ENOTTY: not a V4L2 node)."""
+def captures_video(fd: int) -> bool:
+    """VIDIOC_QUERYCAP, of this node, not of the whole device. Raises OSError (ENOTTY: not a V4L2 node)."""
     raw = fcntl.ioctl(fd, _QUERYCAP, bytes(_CAPABILITY.size))
-    driver, card, bus, _version, caps, device_caps, *_ = _CAPABILITY.unpack(raw)
-    return Capability(
-        _string(driver),
-        _string(card),
-        _string(bus),
-        device_caps if caps & _CAP_DEVICE_CAPS else caps,
-    )
+    *_, caps, device_caps = _CAPABILITY.unpack(raw)[:6]
+    return bool((device_caps if caps & _CAP_DEVICE_CAPS else caps) & _CAP_VIDEO_CAPTURE)
 
 
 def enumerate_formats(fd: int) -> tuple[PixelFormat, ...]:
@@ -131,10 +116,6 @@ def get_control(fd: int, control_id: int) -> int:
 def set_control(fd: int, control_id: int, value: int) -> None:
     """VIDIOC_S_CTRL. Raises OSError (EACCES: its automatic is on; ERANGE; EIO: the camera refuses)."""
     fcntl.ioctl(fd, _SET_CONTROL, _CONTROL.pack(control_id, value))
-
-
-def _string(raw: bytes) -> str:
-    return raw.split(b"\0", 1)[0].decode("utf-8", "replace")
 
 
 def _fourcc(code: int) -> str:

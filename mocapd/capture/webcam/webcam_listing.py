@@ -7,12 +7,7 @@ from pathlib import Path
 from mocapd.capture.webcam.device_access import check_usable, opened_node
 from mocapd.capture.webcam.identity import WebcamIdentity
 from mocapd.capture.webcam.usb_devices import UsbWebcam, usb_webcams
-from mocapd.capture.webcam.v4l2_ioctl import (
-    CAP_VIDEO_CAPTURE,
-    PixelFormat,
-    enumerate_formats,
-    query_capability,
-)
+from mocapd.capture.webcam.v4l2_ioctl import PixelFormat, captures_video, enumerate_formats
 from mocapd.capture.webcam.webcams import DEV, SYSFS, VideoNode, video_nodes
 from mocapd.errors import MocapdError
 
@@ -93,7 +88,7 @@ def _node_info(node: VideoNode) -> CameraInfo:
 
 def _captures(fd: int, guess: bool) -> bool:
     try:
-        return bool(query_capability(fd).caps & CAP_VIDEO_CAPTURE)
+        return captures_video(fd)
     except OSError:  # `check_usable` reports the cause
         return guess
 
