@@ -5,9 +5,10 @@ FSYNC_NS. Log times are capture times, so that every viewer shows frames and pic
 """
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 
 import msgspec
 from mcap.writer import CompressionType, IndexType, Writer
@@ -220,8 +221,17 @@ class RecordingWriter:
             schema = self._schemas[name] = self._mcap.register_schema(name, _JSONSCHEMA, data)
         return schema
 
-    def _writing(self) -> "_Writing":
-        return _Writing(self.path)
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Turns an OSError, such as of a full disk, into a CannotCreateError with the path."""
+        try:
+            yield
+        except OSError as error:
+            raise CannotCreateError(
+                f"cannot be written any further ({error.strerror})",
+                str(self.path),
+                "make room; what was written before can be read",
+            ) from None
 
 
 def schema_of(name: str) -> bytes:
@@ -229,26 +239,3 @@ def schema_of(name: str) -> bytes:
     if name == PACKED:
         return msgspec.json.encode(msgspec.json.schema(PackedFrame))
     return schemas.schema_json(name)
-
-
-@dataclass(frozen=True, slots=True)
-class _Writing:
-    """Turns an OSError, such as of a full disk, into a CannotCreateError with the path."""
-
-    path: Path
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        if isinstance(error, OSError):
-            raise CannotCreateError(
-                f"cannot be written any further ({error.strerror})",
-                str(self.path),
-                "make room; what was written before can be read",
-            ) from None
