@@ -14,7 +14,12 @@ from mocapd.published.hecht2009.cylinders.part_colours import AppearanceModel, R
 from mocapd.published.hecht2009.cylinders.work_camera import work_camera
 from mocapd.published.hecht2009.head.head_track import HeadPicture
 from mocapd.published.hecht2009.mass_spring.frusta import NAMES
-from mocapd.published.hecht2009.motion_edges import MotionEdges, WorkPicture
+from mocapd.published.hecht2009.motion_edges import (
+    MotionEdges,
+    WorkPicture,
+    motion_edges,
+    work_picture,
+)
 from mocapd.published.hecht2009.params import Params
 from mocapd.published.hecht2009.part_samples import PartSamples, samples_of
 from mocapd.types import Bytes, Camera, Floats, Frame, FrameSet, Rig, Singles
@@ -35,8 +40,8 @@ class CameraEvidence:
         self._size_px = w, h
         self._scale = np.array([w, h]) / camera.size_px
         self.work_camera = work_camera(camera, (w, h))
-        self._now, self._last = (WorkPicture.allocate(h, w) for _ in range(2))
-        self._edges = MotionEdges.allocate(h, w)
+        self._now: WorkPicture  # from the first frame on, as the next
+        self._edges: MotionEdges
         self.background = RoomBackground(h, w, params.background)
         self.before = np.zeros((h, w), np.uint8)
         self._body = np.zeros((h, w), np.uint8)
@@ -62,15 +67,14 @@ class CameraEvidence:
 
     def look(self, frame: Frame | None, offset_s: float) -> None:
         """Process a frame, or None. Raises ConfigError when its size is not the calibration's."""
-        had = self._pixels is not None
+        last = None if self._pixels is None else self._now.grey
         self._pixels, self.offset_s = None, offset_s
         if frame is None:
             return
         check_frame_size(frame, self.camera.size_px)
         self._pixels = frame.pixels
-        self._now, self._last = self._last, self._now
-        self._now.fill(frame.pixels)
-        self._edges.fill(self._now.grey, self._last.grey if had else None, self._params.edges)
+        self._now = work_picture(frame.pixels, self._size_px)
+        self._edges = motion_edges(self._now.grey, last)
 
     def update_foreground(self, uncovered: bool) -> None:
         """Update the foreground; uncovered: also move uncovered background (ghosts) into the background model."""

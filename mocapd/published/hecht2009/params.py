@@ -8,7 +8,6 @@ from mocapd.published.hecht2009.cylinders.limb_params import (
     LimbScoreParams,
 )
 from mocapd.published.hecht2009.mass_spring.simulation import SimulationParams
-from mocapd.published.hecht2009.motion_edges import MotionEdgeParams
 from mocapd.vision.room_background import BackgroundParams
 
 FLOOR_M = 0.0  # y of the world's floor
@@ -24,7 +23,6 @@ class Params:
     motion: LimbMotionParams = field(default_factory=LimbMotionParams)
     score: LimbScoreParams = field(default_factory=LimbScoreParams)
     appearance: LimbAppearanceParams = field(default_factory=LimbAppearanceParams)
-    edges: MotionEdgeParams = field(default_factory=MotionEdgeParams)
     background: BackgroundParams = field(default_factory=BackgroundParams)
     simulation: SimulationParams = field(default_factory=SimulationParams)
     work_width_px: int = 320

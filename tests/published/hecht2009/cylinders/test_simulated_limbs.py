@@ -26,7 +26,7 @@ from mocapd.published.hecht2009.cylinders.part_colours import (
     reference_colours,
 )
 from mocapd.published.hecht2009.cylinders.work_camera import WorkCamera, work_camera
-from mocapd.published.hecht2009.motion_edges import MotionEdgeParams, MotionEdges, WorkPicture
+from mocapd.published.hecht2009.motion_edges import motion_edges, work_picture
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
 from mocapd.sim.scenario import load_scenario
 from mocapd.sim.world import World
@@ -88,11 +88,8 @@ def picture(t_s: float, camera: int) -> tuple[Bytes, Bytes]:
 
 def seen(t_s: float, camera: int, ends_m: Floats) -> tuple[LimbView, Floats, Floats]:
     """The evidence at t_s, nothing known of colours; quads and depths of the parts."""
-    now, before = WorkPicture.allocate(*WORK_PX[::-1]), WorkPicture.allocate(*WORK_PX[::-1])
-    now.fill(picture(t_s, camera)[0])
-    before.fill(picture(t_s - FRAME_S, camera)[0])
-    evidence = MotionEdges.allocate(*WORK_PX[::-1])
-    evidence.fill(now.grey, before.grey, MotionEdgeParams())
+    now, before = (work_picture(picture(t, camera)[0], WORK_PX) for t in (t_s, t_s - FRAME_S))
+    evidence = motion_edges(now.grey, before.grey)
     occlusion = allocate_occlusion(len(ends_m), WORK_PX, SCORE.cell_px)
     body = fill_occlusion(occlusion, stage().cameras[camera], ends_m, RADII_M)
     unknown = np.full((len(ends_m), SCORE.along, 3), np.nan, np.float32)

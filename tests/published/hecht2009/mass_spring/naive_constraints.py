@@ -152,5 +152,5 @@ def legs_too_near_m(body: MassSpringBody, p: Floats) -> float:
     for pair, (gap, passing_m) in zip((KNEE, ANKLE), body.constraints.gaps, strict=True):
         d = p[pair[0]] - p[pair[1]]
         beside = float(np.linalg.norm(d - (d @ across) * across))
-        missing.append(gap - max(0.0, beside - passing_m) - float(d @ across))
+        missing.append(float(gap - max(0.0, beside - passing_m) - d @ across))
     return max(missing)
