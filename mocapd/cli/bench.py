@@ -20,11 +20,6 @@ if TYPE_CHECKING:
 _DEFAULT = "sim:living_room"
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("bench")(bench_command)
-
-
 def bench_command(
     tracker: Annotated[
         str | None, typer.Option(help="Which tracker [default: all that can track this input]")

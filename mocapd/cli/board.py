@@ -9,11 +9,6 @@ from mocapd.cli.options import ForceOption
 from mocapd.errors import usage_errors
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("board")(board)
-
-
 def board(
     out: Annotated[Path, typer.Option("--out", help="The PDF to write.")],
     paper: Annotated[str, typer.Option(help="A4, Letter, A3, A2 or A1.")] = "A4",

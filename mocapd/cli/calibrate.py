@@ -6,14 +6,8 @@ from typing import Annotated
 import typer
 
 from mocapd.app.setup.folder_calibration_run import FolderOptions, calibrate_folder
-from mocapd.cli.command_line.option_groups import spread_options
 from mocapd.cli.options import CameraOption, ConfigOption, ForceOption, SetOption, effective_config
 from mocapd.errors import UsageError
-
-
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("calibrate")(spread_options(calibrate))
 
 
 def calibrate(

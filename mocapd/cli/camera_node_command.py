@@ -14,11 +14,6 @@ from mocapd.cli.options import (
 )
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("camera-node")(camera_node)
-
-
 def camera_node(
     config: ConfigOption = None,
     settings: SetOption = None,

@@ -12,11 +12,6 @@ if TYPE_CHECKING:
     from mocapd.capture.webcam.webcam_listing import CameraInfo
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("cameras")(cameras)
-
-
 def cameras(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a camera.")] = False,
     at: Annotated[

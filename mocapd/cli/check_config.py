@@ -14,11 +14,6 @@ if TYPE_CHECKING:
     from mocapd.config.sections import Config
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("check-config")(check_config)
-
-
 def check_config(
     config: ConfigOption = None,
     settings: SetOption = None,

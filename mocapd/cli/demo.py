@@ -18,11 +18,6 @@ if TYPE_CHECKING:
 SCENARIO = "living_room"
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("demo")(demo)
-
-
 def demo(
     config: ConfigOption = None,
     settings: SetOption = None,

@@ -28,11 +28,6 @@ class Joints(StrEnum):
     LEGS = "legs"
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("eval")(evaluate_captures)
-
-
 def evaluate_captures(
     captures: Annotated[
         list[Path] | None, typer.Argument(help="Folders in the capture format with a truth.npz.")

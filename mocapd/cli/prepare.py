@@ -1,13 +1,6 @@
 """`mocapd prepare`"""
 
-import typer
-
 from mocapd.cli.options import ConfigOption, SetOption, effective_config
-
-
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("prepare")(prepare)
 
 
 def prepare(config: ConfigOption = None, settings: SetOption = None) -> None:

@@ -6,11 +6,6 @@ from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
 from mocapd.errors import one_line
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("recenter")(recenter)
-
-
 def recenter(config: ConfigOption = None, settings: SetOption = None) -> None:
     """Set the direction that the person faces now as forward, in the running daemon.
 

@@ -27,11 +27,6 @@ if TYPE_CHECKING:
 _log = logging.getLogger(__name__)
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("run")(run)
-
-
 def run(
     config: ConfigOption = None,
     settings: SetOption = None,

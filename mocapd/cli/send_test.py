@@ -8,11 +8,6 @@ from mocapd.cli.options import ConfigOption, SetOption, VrmOption, effective_con
 from mocapd.errors import UsageError
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("send-test")(send_test_command)
-
-
 def send_test_command(
     output: Annotated[
         str, typer.Option("--output", help="Which output: zenoh, osc, vmc, vrchat or vmt.")

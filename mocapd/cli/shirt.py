@@ -9,11 +9,6 @@ from mocapd.cli.options import ForceOption
 from mocapd.errors import usage_errors
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("shirt")(shirt)
-
-
 def shirt(
     out: Annotated[Path, typer.Option("--out", help="The PDF to write.")],
     size: Annotated[str, typer.Option(help="S, M, L, XL or XXL.")] = "M",

@@ -21,11 +21,6 @@ class RoomSeen(StrEnum):
     WHOLE = "whole"
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("track")(track)
-
-
 def track(
     capture: Annotated[
         Path,

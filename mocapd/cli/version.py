@@ -7,12 +7,6 @@ import typer
 import mocapd
 
 
-def add_to(app: typer.Typer) -> None:
-    """Make it a command, and an option of the program."""
-    app.callback()(options)
-    app.command("version")(version)
-
-
 def version() -> None:
     """Print the version.
 

@@ -16,11 +16,6 @@ if TYPE_CHECKING:
 SHOWN = ("head", "leftHand", "rightHand", "hips")
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("watch")(watch)
-
-
 def watch(
     config: ConfigOption = None,
     settings: SetOption = None,

@@ -1,14 +1,7 @@
 """`mocapd web-link`"""
 
-import typer
-
 from mocapd.cli.options import ConfigOption, SetOption, effective_config
 from mocapd.errors import ConfigError
-
-
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("web-link")(web_link)
 
 
 def web_link(config: ConfigOption = None, settings: SetOption = None) -> None:

@@ -14,11 +14,6 @@ VARIABLE = "_MOCAPD_COMPLETE"  # set by the shell's script; typer then prints co
 Shell = StrEnum("Shell", ["bash", "zsh", "fish"])  # those that load completions from a file
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("completion")(completion)
-
-
 def completion(shell: Annotated[Shell, typer.Argument(help="Which shell.")]) -> None:
     """Print the completion script of a shell.
 

@@ -1,14 +1,7 @@
 """`mocapd reload`"""
 
-import typer
-
 from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
 from mocapd.errors import one_line
-
-
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("reload")(reload)
 
 
 def reload(config: ConfigOption = None, settings: SetOption = None) -> None:

@@ -20,11 +20,6 @@ UNABLE = 150
 SLOW = 151
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("status")(status)
-
-
 def status(
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object a daemon.")] = False,
     config: ConfigOption = None,

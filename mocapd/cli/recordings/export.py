@@ -14,11 +14,6 @@ Feet = StrEnum("Feet", ["tracked", "floor"])
 Legs = StrEnum("Legs", ["seen", "all"])
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("export")(export)
-
-
 def export(
     file: Annotated[Path, typer.Argument(help="A recording of `mocapd record`.")],
     to: Annotated[ExportTo, typer.Option("--to", help="The format.")],

@@ -9,11 +9,6 @@ from mocapd.cli.options import ConfigOption, ForceOption, SetOption, effective_c
 from mocapd.errors import UnavailableError
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("record")(record)
-
-
 def record(
     file: Annotated[
         Path | None,

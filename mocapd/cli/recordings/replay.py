@@ -18,11 +18,6 @@ if TYPE_CHECKING:
 SHOW_EVERY_S = 0.25
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command("replay")(replay)
-
-
 def replay(
     file: Annotated[Path, typer.Argument(help="A recording of `mocapd record`.")],
     speed: Annotated[

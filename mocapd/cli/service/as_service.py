@@ -5,14 +5,6 @@ from typing import Annotated
 import typer
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the command."""
-    app.command(
-        "as-service",
-        context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False},
-    )(as_service)
-
-
 def as_service(
     words: Annotated[
         list[str], typer.Argument(help="What follows `mocapd`.", metavar="COMMAND...")

@@ -24,12 +24,6 @@ RootOption = Annotated[
 ]
 
 
-def add_to(app: typer.Typer) -> None:
-    """Register the commands."""
-    app.command("install-service")(install_service)
-    app.command("uninstall-service")(uninstall_service)
-
-
 def install_service(
     user: UserOption = False,
     dry_run: DryRunOption = False,
