@@ -34,14 +34,12 @@ class JpegPicture:
 
     @property
     def pixels(self) -> Bytes:
-        """See CompressedPicture."""
         if self._pixels is None:
             self._pixels = frozen_pixels(decode_camera_picture(self.encoded))
         return self._pixels
 
     @property
     def grey(self) -> Bytes:
-        """See CompressedPicture."""
         if self._grey is None and self._pixels is None:
             self._grey = frozen_pixels(
                 decode_camera_picture(self.encoded, flags=cv2.IMREAD_GRAYSCALE)

@@ -63,7 +63,6 @@ class DaemonControl:
         """See LoopHook."""
 
     def let_go(self) -> None:
-        """See LoopHook."""
         self._socket.close()
 
     def _died(self, error: BaseException) -> None:

@@ -18,7 +18,6 @@ class EarlyStart:
         self._waits = True
 
     def on_tick(self, _snapshot: Snapshot) -> None:
-        """See LoopHook."""
         if not self._waits:
             return
         self._waits = not self._preparation.is_over

@@ -101,7 +101,6 @@ class SessionChange:
         self._why = self._wish = ""
 
     def on_tick(self, snapshot: Snapshot) -> None:
-        """See LoopHook."""
         if self._page is not None:
             self._page.on_tick(snapshot)
         if self._preparation is None:
@@ -125,7 +124,6 @@ class SessionChange:
         self._wish = why
 
     def let_go(self) -> None:
-        """See LoopHook."""
         self.reloads.close()
         if self._page is not None:
             self._page.let_go()

@@ -45,7 +45,6 @@ class Supervision:
         self._runs = False
 
     def on_tick(self, snapshot: Snapshot) -> None:
-        """See LoopHook."""
         self._notifier.status(state_text(snapshot))
         if self._notifier.is_heartbeat_due and self._watch.has_progressed(snapshot):
             self._notifier.heartbeat()
@@ -54,7 +53,6 @@ class Supervision:
             _log.info("the first body is sent: %s", state_text(snapshot))
 
     def let_go(self) -> None:
-        """See LoopHook."""
         self._notifier.stopping()
 
 

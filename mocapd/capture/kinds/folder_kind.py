@@ -27,39 +27,31 @@ class FolderOrigin:
 
     @property
     def rig(self) -> Rig:
-        """See Origin."""
         return self.folder.rig
 
     @property
     def rig_source(self) -> str:
-        """See Origin."""
         return str(self.folder.path / "rig.json")
 
     @property
     def stature_m(self) -> float | None:
-        """See Origin."""
         return self.folder.stature_m
 
     @property
     def fps_hz(self) -> float:
-        """See Origin."""
         return self.folder.fps_hz
 
     @property
     def count(self) -> int:
-        """See Origin."""
         return max(camera.frames for camera in self.folder.cameras)
 
     def model(self) -> tuple[LabelledPicture, ...]:
-        """See Origin."""
         return read_model(self.folder.model)
 
     def white_balance(self) -> Mapping[str, LabelledPicture]:
-        """See Origin."""
         return {c.name: read_labelled(c.scribble) for c in self.folder.cameras if c.scribble}
 
     def frame_sets(self) -> Iterator[FrameSet]:
-        """See Origin."""
         return frame_sets(self.folder)
 
     def source(self, address: str, request: SourceRequest) -> Source:

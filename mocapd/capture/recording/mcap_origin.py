@@ -34,25 +34,20 @@ class McapOrigin:
 
     @property
     def rig_source(self) -> str:
-        """See Origin."""
         return str(self.path)
 
     @property
     def stature_m(self) -> float | None:
-        """See Origin."""
         return self.metadata.stature_m
 
     @property
     def count(self) -> int:
-        """See Origin."""
         return max(self.counts.values())
 
     def model(self) -> tuple[LabelledPicture, ...]:
-        """See Origin."""
         return self.metadata.model
 
     def white_balance(self) -> Mapping[str, LabelledPicture]:
-        """See Origin."""
         return self.metadata.white_balance
 
     def frame_sets(self) -> Iterator[FrameSet]:

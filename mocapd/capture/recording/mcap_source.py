@@ -36,7 +36,6 @@ class McapSource:
         self.torn = 0
 
     def open(self) -> None:
-        """See Source."""
         self._closed.clear()
         self._messages = _picture_messages(self._path, self._camera.name)
 
@@ -62,7 +61,6 @@ class McapSource:
         raise EndOfStream("ended after all of its pictures", str(self._path))
 
     def close(self) -> None:
-        """See Source."""
         self._closed.set()
 
 

@@ -21,16 +21,13 @@ class RemoteControls:
         self._camera, self._ask = camera, ask
 
     def range(self, control: Control) -> ControlRange | None:
-        """See ControlDevice."""
         limits = self._done(Order("range", control)).limits
         return ControlRange(*limits) if limits is not None else None
 
     def read(self, control: Control) -> int | None:
-        """See ControlDevice."""
         return self._done(Order("read", control)).value
 
     def write(self, control: Control, value: int) -> int | None:
-        """See ControlDevice."""
         return self._done(Order("write", control, value)).value
 
     def keep(self, controls: Controls) -> None:

@@ -129,7 +129,6 @@ class RemoteSource:
 
     @property
     def notice(self) -> str:
-        """See Notices."""
         link = self._link
         trouble = link.clock.trouble(monotonic_ns()) if link is not None else ""
         return f"{trouble} -- {_TIME_SERVICE}" if trouble else ""
@@ -151,11 +150,9 @@ class RemoteSource:
 
     @property
     def settings(self) -> WebcamSettings:
-        """See Lockable."""
         return self._settings
 
     def device(self) -> RemoteControls | None:
-        """See Lockable."""
         link = self._link
         if link is None or link.is_closed or not self._takes_orders:
             return None

@@ -33,30 +33,24 @@ class FilmOrigin:
 
     @property
     def rig(self) -> Rig:
-        """See Origin."""
         return self._film.setup.rig
 
     @property
     def stature_m(self) -> float | None:
-        """See Origin."""
         return self._film.setup.stature_m
 
     @property
     def fps_hz(self) -> float:
-        """See Origin."""
         return self._film.scenario.fps_hz
 
     @property
     def count(self) -> int:
-        """See Origin."""
         return min(len(jpegs) for jpegs in self._film.frames.values())
 
     def model(self) -> tuple[LabelledPicture, ...]:
-        """See Origin."""
         return self._film.setup.model
 
     def white_balance(self) -> Mapping[str, LabelledPicture]:
-        """See Origin."""
         return self._film.setup.scribbles
 
     def frame_sets(self) -> Iterator[FrameSet]:
