@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 
 from mocapd.published.hecht2009.cylinders.limb_params import (
-    LimbAppearanceParams,
     LimbMotionParams,
     LimbScoreParams,
 )
@@ -22,13 +21,9 @@ class Params:
     seed: int = 0
     motion: LimbMotionParams = field(default_factory=LimbMotionParams)
     score: LimbScoreParams = field(default_factory=LimbScoreParams)
-    appearance: LimbAppearanceParams = field(default_factory=LimbAppearanceParams)
     background: BackgroundParams = field(default_factory=BackgroundParams)
     simulation: SimulationParams = field(default_factory=SimulationParams)
     work_width_px: int = 320
-    # m = m_base + m_variable exp(s sigma) [Hecht 2009, section III]
-    variable_kg: float = 30.0
-    falloff_per_m: float = -12.0
     sure_m: float = 0.10  # spread of a point at which it teaches 1/e as much of its colour
 
     # initialisation with the body that hangs from the head

@@ -242,7 +242,7 @@ class Hecht2009Tracker:
             spread[list(which)] = np.sqrt(cloud.variance_m2)
             guided = with_points(guided, which, cloud.mean_m)
         self.probe("particles")
-        masses = confident_masses(body.mass_kg, spread, p.variable_kg, p.falloff_per_m)
+        masses = confident_masses(body.mass_kg, spread)
         state = project_onto_constraints(body, guided, masses, FLOOR_M, p.simulation)
         edge = mean_edge_penalty(body.frusta, state.points_m, self._limb_views(), p.score)
         samples = self._samples(state.points_m)
@@ -274,16 +274,14 @@ class Hecht2009Tracker:
     def _learn_appearance(self, clouds: dict[str, LimbCloud], dt_s: float) -> None:
         """Update the running average of the parts' colours, weighted by the confidence of each end."""
         p, views = self.params, self._views
-        if not p.score.appearance or views.appearance.is_fixed(p.appearance):
+        if not p.score.appearance or views.appearance.is_fixed:
             return
         sure = np.ones((len(NAMES), 2))
         for limb, (upper, lower) in PARTS.items():
             at = np.exp(-np.sqrt(clouds[limb].variance_m2) / p.sure_m)
             sure[upper], sure[lower] = at[:2], at[1:]
         for view in views.present:
-            views.appearance = learn(
-                views.appearance, view.index, view.ring_colours(), sure, dt_s, p.appearance
-            )
+            views.appearance = learn(views.appearance, view.index, view.ring_colours(), sure, dt_s)
 
     # --- evidence ---
 

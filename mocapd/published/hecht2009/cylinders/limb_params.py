@@ -1,4 +1,4 @@
-"""Numbers of the limbs' scores, their appearance and their particles, with units and reasons."""
+"""Numbers of the limbs' scores and their particles, with units and reasons."""
 
 from dataclasses import dataclass
 
@@ -46,13 +46,6 @@ def as_published() -> LimbScoreParams:
         surface_weight=40.0, colour_cap=765.0, shading=0.0, oriented=False, by_size=False, folds=False,
         usual=(0.10, 0.08), hidden_surplus=0.0, usual_s=0.0,
     )  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True)
-class LimbAppearanceParams:
-    """How the colours of the parts are learned."""
-
-    enough_s: float = 1.0  # of sure and full view, after which a ring's colour is fixed
 
 
 @dataclass(frozen=True, slots=True)

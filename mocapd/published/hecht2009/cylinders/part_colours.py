@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mocapd.published.hecht2009.cylinders.limb_params import LimbAppearanceParams
 from mocapd.published.hecht2009.cylinders.occlusion_kernels import OcclusionModel
 from mocapd.published.hecht2009.cylinders.part_colour_kernels import observe_colours
 from mocapd.types import Bytes, Floats, Singles
 
 RINGS = 10
+ENOUGH_S = 1.0  # of sure and full view, after which a ring's colour is fixed
 _SAMPLES = 2, 6  # of a ring, along and across
 
 
@@ -32,9 +32,10 @@ class AppearanceModel:
             np.zeros((n_views, n_parts, RINGS, 3), np.float32), np.zeros((n_views, n_parts, RINGS))
         )
 
-    def is_fixed(self, params: LimbAppearanceParams) -> bool:
+    @property
+    def is_fixed(self) -> bool:
         """True if no ring in any view changes any more."""
-        return bool((self.visible_s >= params.enough_s).all())
+        return bool((self.visible_s >= ENOUGH_S).all())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,7 +68,6 @@ def learn(
     observed: RingColours,
     confidence: Floats,
     dt_s: float,
-    params: LimbAppearanceParams,
 ) -> AppearanceModel:
     """The running average with one more picture of camera `view`, taken dt_s after the one before.
 
@@ -76,9 +76,7 @@ def learn(
     s = (np.arange(RINGS) + 0.5) / RINGS
     local = confidence[:, :1] * (1.0 - s) + confidence[:, 1:] * s
     before_s = model.visible_s[view]
-    gain = np.where(
-        before_s < params.enough_s, np.clip(local, 0.0, 1.0) * observed.share * dt_s, 0.0
-    )
+    gain = np.where(before_s < ENOUGH_S, np.clip(local, 0.0, 1.0) * observed.share * dt_s, 0.0)
     colours, visible_s = model.colour.copy(), model.visible_s.copy()
     rate = gain / np.maximum(before_s + gain, 1e-12)
     colours[view] += rate[..., None] * (observed.colour - colours[view])

@@ -31,6 +31,7 @@ from mocapd.types import Floats
 
 # three seconds with the damping at which a body that hangs comes to rest soonest, twice its pendulum's frequency
 _CALMING_PER_S, _CALMING_FRAMES = 7.0, 90
+_NO_FLOOR_M = -math.inf  # its height where none is known
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +52,9 @@ class SimulationParams:
     most_m_s: float = 12.0
     # of the head's way all other points go with it [Hecht et al. 2009, section III]
     head_share: float = 0.8
+
+
+_USUAL = SimulationParams()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,10 +91,9 @@ def with_head(
     body: MassSpringBody,
     state: MassSpringState,
     middle_m: Floats,
-    params: SimulationParams | None = None,
+    params: SimulationParams = _USUAL,
 ) -> MassSpringState:
     """The head's middle at middle_m (3,), all other points moved by head_share of HEAD's motion; velocities unchanged."""
-    params = params if params is not None else SimulationParams()
     head = middle_m - body.frusta.head_ahead_m * head_forward(state.points_m)
     points = state.points_m + params.head_share * (head - state.points_m[HEAD])
     points[HEAD] = head
@@ -115,22 +118,21 @@ def simulate(
     state: MassSpringState,
     dt_s: float,
     mass_kg: Floats | None = None,
-    floor_m: float | None = None,
-    params: SimulationParams | None = None,
+    floor_m: float = _NO_FLOOR_M,
+    params: SimulationParams = _USUAL,
 ) -> MassSpringState:
     """The state dt_s later: Verlet steps with gravity and damping, each projected.
 
-    mass_kg (16,): the body's own unless given, inf for fixed points; floor_m: height of the floor, None where unknown. Time
+    mass_kg (16,): the body's own unless given, inf for fixed points; floor_m: height of the floor. Time
     beyond params.most_s is not simulated.
     """
-    params = params if params is not None else SimulationParams()
     dt = min(max(dt_s, 0.0), params.most_s)
     if dt == 0.0:
         return state
     points, velocities = state.points_m.copy(), state.velocities_m_s.copy()
     advance(
         points, velocities, inverse_masses(body.mass_kg if mass_kg is None else mass_kg),
-        plain(body.constraints), plain(body.everybody), _floor(floor_m), dt,
+        plain(body.constraints), plain(body.everybody), floor_m, dt,
         math.ceil(dt / params.step_s - 1e-6), params.sweeps_per_step, params.damping_per_s,
         params.gravity_m_s2, params.most_m_s,
     )  # fmt: skip
@@ -141,16 +143,15 @@ def project_onto_constraints(
     body: MassSpringBody,
     state: MassSpringState,
     mass_kg: Floats | None = None,
-    floor_m: float | None = None,
-    params: SimulationParams | None = None,
+    floor_m: float = _NO_FLOOR_M,
+    params: SimulationParams = _USUAL,
 ) -> MassSpringState:
     """The nearest state that the constraints allow; heavy points move least. No time passes, velocities are unchanged."""
-    params = params if params is not None else SimulationParams()
     points = state.points_m[None].copy()
     project(
         points, np.arange(N_POINTS), state.points_m,
         inverse_masses(body.mass_kg if mass_kg is None else mass_kg), plain(body.constraints),
-        plain(body.everybody), _floor(floor_m), params.projection_s, params.projection_sweeps, LIMITS_EVERY,
+        plain(body.everybody), floor_m, params.projection_s, params.projection_sweeps, LIMITS_EVERY,
     )  # fmt: skip
     return replace(state, points_m=points[0])
 
@@ -161,20 +162,19 @@ def project_limb(
     particles_m: Floats,
     points_m: Floats,
     mass_kg: Floats | None = None,
-    floor_m: float | None = None,
+    floor_m: float = _NO_FLOOR_M,
     sweeps: int = 4,
-    params: SimulationParams | None = None,
+    params: SimulationParams = _USUAL,
 ) -> Floats:
     """Particles (N,3,3) [m] of one of LIMBS, projected to states that are valid with the other points of points_m (16,3).
 
     Only the constraints that touch the three points are active; all other points stay [Hecht et al. 2009, section III.A].
     """
-    params = params if params is not None else SimulationParams()
     out = np.array(particles_m, dtype=float)
     project(
         out, np.array(LIMBS[limb]), np.ascontiguousarray(points_m, dtype=float),
         inverse_masses(body.mass_kg if mass_kg is None else mass_kg), plain(body.constraints),
-        plain(body.limbs[limb]), _floor(floor_m), params.projection_s, sweeps, min(2, sweeps),
+        plain(body.limbs[limb]), floor_m, params.projection_s, sweeps, min(2, sweeps),
     )  # fmt: skip
     return out
 
@@ -183,14 +183,13 @@ def relaxed_state(
     body: MassSpringBody,
     middle_m: Floats,
     facing_rad: float = 0.0,
-    floor_m: float | None = None,
-    params: SimulationParams | None = None,
+    floor_m: float = _NO_FLOOR_M,
+    params: SimulationParams = _USUAL,
 ) -> MassSpringState:
     """The body at rest under its head, arms and legs dangling.
 
     middle_m (3,): the head's middle; facing_rad: the body's turn about +Y from facing +Z.
     """
-    params = params if params is not None else SimulationParams()
     points = body.rest_m.copy()
     for s in (0, 1):
         upper, lower = (
@@ -207,7 +206,3 @@ def relaxed_state(
     for _ in range(_CALMING_FRAMES):
         state = simulate(body, state, 1.0 / 30.0, floor_m=floor_m, params=calm)
     return resting(state.points_m)
-
-
-def _floor(floor_m: float | None) -> float:
-    return -math.inf if floor_m is None else float(floor_m)

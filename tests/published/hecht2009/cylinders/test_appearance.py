@@ -5,10 +5,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from mocapd.published.hecht2009.cylinders.limb_params import LimbAppearanceParams, LimbScoreParams
+from mocapd.published.hecht2009.cylinders.limb_params import LimbScoreParams
 from mocapd.published.hecht2009.cylinders.occlusion import allocate_occlusion, fill_occlusion
 from mocapd.published.hecht2009.cylinders.occlusion_kernels import OcclusionModel
 from mocapd.published.hecht2009.cylinders.part_colours import (
+    ENOUGH_S,
     AppearanceModel,
     learn,
     observe,
@@ -18,7 +19,6 @@ from mocapd.published.hecht2009.cylinders.work_camera import work_camera
 from mocapd.types import Bytes, Floats
 from tests.published.hecht2009.cylinders.naive import ENDS_M, RADII_M, WORK_PX, camera
 
-PARAMS = LimbAppearanceParams()
 HIDDEN_BY_M = LimbScoreParams().hidden_by_m
 FOREARM, SHIN, UPPER_TRUNK = 4, 8, 1
 SURE = np.ones((len(ENDS_M), 2))
@@ -51,7 +51,7 @@ def learned(
 ) -> AppearanceModel:  # fmt: skip
     occlusion, quads, depths_m = occluded()
     seen = observe(quads, depths_m, colour, mask, occlusion, HIDDEN_BY_M)
-    return learn(model, 0, seen, confidence, dt_s, PARAMS)
+    return learn(model, 0, seen, confidence, dt_s)
 
 
 def test_the_cloths_colours_are_found_through_noise() -> None:
@@ -98,10 +98,10 @@ def test_it_is_a_running_average_and_then_fixed() -> None:
     grey = np.full((*EVERYWHERE.shape, 3), 80, np.uint8)
     model = learned(learned(model, grey, dt_s=0.1), grey * 2, dt_s=0.3)
     assert model.colour[0, SHIN] == pytest.approx(np.full((10, 3), 140.0), abs=0.01)
-    assert not model.is_fixed(PARAMS)
+    assert not model.is_fixed
     for _ in range(30):
         model = learned(model, grey)
-    assert (model.visible_s[0, SHIN] >= PARAMS.enough_s).all()
+    assert (model.visible_s[0, SHIN] >= ENOUGH_S).all()
     before = model.colour[0, SHIN].copy()
     assert (learned(model, grey * 3).colour[0, SHIN] == before).all()
 

@@ -11,7 +11,6 @@ from mocapd.assets import asset_path
 from mocapd.body.skeleton import INDEX
 from mocapd.geometry import rotations
 from mocapd.published.hecht2009.cylinders.limb_params import (
-    LimbAppearanceParams,
     LimbMotionParams,
     LimbScoreParams,
     as_published,
@@ -108,13 +107,13 @@ def seen(t_s: float, camera: int, ends_m: Floats) -> tuple[LimbView, Floats, Flo
 @cache
 def reference() -> tuple[np.ndarray, ...]:
     """The colours of both cameras, learned in the first seconds."""
-    model, params = AppearanceModel.initial(2, len(RADII_M)), LimbAppearanceParams()
+    model = AppearanceModel.initial(2, len(RADII_M))
     for t_s in LEARNED_S:
         for camera in (0, 1):
             view, quads, depths = seen(t_s, camera, body_ends(t_s))
             mask = picture(t_s, camera)[1]
             rings = observe(quads, depths, view.colour, mask, view.occlusion, SCORE.hidden_by_m)
-            model = learn(model, camera, rings, np.ones((len(RADII_M), 2)), 0.1, params)
+            model = learn(model, camera, rings, np.ones((len(RADII_M), 2)), 0.1)
     return tuple(reference_colours(model, SCORE.along))
 
 
