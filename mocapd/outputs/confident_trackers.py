@@ -7,7 +7,9 @@ threshold lies below that range, the lower one well below, because the avatar sh
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 
+from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.wire import Joint, SkeletonFrame
 from mocapd.outputs.worn_trackers import WornTracker
 
@@ -32,10 +34,18 @@ class ConfidentTrackers:
         )
         return self.sent
 
-    @property
-    def missing(self) -> tuple[WornTracker, ...]:
-        """The trackers that are not in the current selection."""
-        return tuple(tracker for tracker in self._trackers if tracker not in self.sent)
+    def with_missing(self, status: SinkStatus) -> SinkStatus:
+        """The status with the names of the trackers that are not in the current selection."""
+        missing = ", ".join(tracker.label for tracker in self._trackers if tracker not in self.sent)
+        return (
+            replace(status, detail=f"{status.detail}; not seen: {missing}") if missing else status
+        )
+
+
+def confident_head(joints: Mapping[str, Joint]) -> Joint | None:
+    """The head, if its position is confident: as much as the neck is."""
+    head, below = joints.get("head"), joints.get("neck")
+    return head if below is not None and below.c > BEGINS_ABOVE else None
 
 
 def _confidence(tracker: WornTracker, joints: Mapping[str, Joint]) -> float:

@@ -2,11 +2,11 @@
 
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 from mocapd.outputs.base import SinkStatus
-from mocapd.outputs.confident_trackers import BEGINS_ABOVE, ConfidentTrackers
+from mocapd.outputs.confident_trackers import ConfidentTrackers, confident_head
 from mocapd.outputs.facing import facing_yaw_rad
 from mocapd.outputs.messages import Facing, StateMessage
 from mocapd.outputs.osc.osc_sink import Destination, parse_destination, status_of
@@ -17,7 +17,6 @@ from mocapd.outputs.worn_trackers import WornTracker, trackers_of
 KEY = "vmt.destination"
 # all of them: the user assigns them in SteamVR
 TRACKERS = trackers_of(("hip", "feet", "chest", "knees", "elbows"))
-_HEAD_ON = "neck"  # the bone whose confidence is that of the head's position
 
 Pose = tuple[Vector, Quaternion]
 
@@ -88,10 +87,8 @@ class VmtSink:
         """The origin of the positions in mocapd's world [m]; None: it is the head, which is not tracked."""
         if self._params.anchor == "room":
             return (0.0, 0.0, 0.0)
-        head, below = joints.get("head"), joints.get(_HEAD_ON)
-        if head is None or below is None or not below.c > BEGINS_ABOVE:
-            return None
-        return eyes_m(head)
+        head = confident_head(joints)
+        return None if head is None else eyes_m(head)
 
     def _pose(self, joints: Mapping[str, Joint], tracker: WornTracker, origin_m: Vector) -> Pose:
         at = joints[tracker.place].p
@@ -107,11 +104,7 @@ class VmtSink:
     def status(self) -> SinkStatus:
         """Frames sent; the detail names the untracked trackers."""
         there = self._destination
-        status = status_of([] if there is None else [there])
-        missing = ", ".join(tracker.label for tracker in self._trackers.missing)
-        return (
-            replace(status, detail=f"{status.detail}; not seen: {missing}") if missing else status
-        )
+        return self._trackers.with_missing(status_of([] if there is None else [there]))
 
     def close(self) -> None:
         """Switch the trackers off, and close the socket; may be called twice."""

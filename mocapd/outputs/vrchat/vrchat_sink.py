@@ -10,7 +10,7 @@ from msgspec import Meta
 
 from mocapd.errors import ConfigError, UnavailableError
 from mocapd.outputs.base import SinkStatus
-from mocapd.outputs.confident_trackers import BEGINS_ABOVE, ConfidentTrackers
+from mocapd.outputs.confident_trackers import ConfidentTrackers, confident_head
 from mocapd.outputs.facing import facing_yaw_rad
 from mocapd.outputs.messages import Facing, StateMessage
 from mocapd.outputs.osc.osc_sink import parse_destination
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from mocapd.outputs.vrchat.vrchat_finder import VRChatFinder
 
 AUTO = "auto"
-HEAD_ON = "neck"  # the bone whose confidence is that of the head's position
 
 _log = logging.getLogger(__name__)
 
@@ -126,8 +125,8 @@ class VRChatSink:
         turn_rad = self._alignment.turn_rad
         turn, half_turn = cos_sin(turn_rad), cos_sin(0.5 * turn_rad)
         vectors: dict[str, Vector] = {}
-        head, below = joints.get("head"), joints.get(HEAD_ON)
-        if self._params.head and head is not None and below is not None and below.c > BEGINS_ABOVE:
+        head = confident_head(joints)
+        if self._params.head and head is not None:
             vectors[tracker_bundle.HEAD_POSITION] = unity_position(head.p, turn)
         if is_aligned:
             # without pitch and roll: VRChat uses the yaw
@@ -151,10 +150,7 @@ class VRChatSink:
         status = self._link.status()
         if self._finder is not None and self._finder.address is None:
             status = replace(status, detail=self._finder.detail)
-        missing = ", ".join(tracker.label for tracker in self._trackers.missing)
-        return (
-            replace(status, detail=f"{status.detail}; not seen: {missing}") if missing else status
-        )
+        return self._trackers.with_missing(status)
 
     def close(self) -> None:
         """Stop the search, close the socket; may be called twice."""
