@@ -12,8 +12,6 @@ from mocapd.app.libraries import prepare_libraries
 from mocapd.assets import asset_path
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.config.sections import CameraSection, Config, TrackerSection
-from mocapd.published.hecht2009.build import build_hecht2009_tracker
-from mocapd.published.rao_hodges.build import build_rao_hodges_tracker
 from mocapd.session.prepared_marker import remember
 from mocapd.session.tracker_setup import cache_resources, make_caches, ready_tracker
 from mocapd.sim.film import load_film
@@ -24,7 +22,7 @@ from tests.conftest import ROOT
 from tests.sim.simulated_calibration import calibration_of_setup
 from tests.tracking.hard_film import CLOSE_PAIR, N_EMPTY, HardFilm, hard_film
 from tests.tracking.plain_film import PlainFilm, plain_film
-from tests.tracking.profiles import markerless_tracker
+from tests.tracking.profiles import hecht2009_tracker, markerless_tracker, rao_hodges_tracker
 from tests.tracking.stepping import Stepping
 
 _CONFIRMED = 25  # frames
@@ -70,8 +68,8 @@ def published_trackers() -> None:
 
     Most of the others' compile when somebody is found, who stands too far away in the setup's film.
     """
-    _follow(hard_film("before_a_television"), build_hecht2009_tracker)
-    _follow(plain_film(has_third=True), build_rao_hodges_tracker)
+    _follow(hard_film("before_a_television"), hecht2009_tracker)
+    _follow(plain_film(has_third=True), rao_hodges_tracker)
     _compile("wang2011")
 
 

@@ -15,11 +15,12 @@ from lab.command_line import run
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.evaluate.capture_eval import evaluate, open_case
 from mocapd.published.rao_hodges.annealing import AnnealingParams
-from mocapd.published.rao_hodges.build import build_rao_hodges_tracker
 from mocapd.published.rao_hodges.params import Params
 from mocapd.session.tracker_setup import ReadyTracker
+from mocapd.trackers.registry import Resources, build
 from mocapd.tracking.tracker_inputs import wearer_shape
 
+_TRACKER = "rao_hodges"
 _STATURE_M = 1.75  # of captures that do not say
 _PARAMS: Mapping[str, Params] = MappingProxyType(
     {
@@ -43,7 +44,8 @@ def captures(
         for folder in folders:
 
             def ready(known: Calibration, params: Params = params) -> ReadyTracker:
-                return ReadyTracker(build_rao_hodges_tracker(known, params), wearer_shape(known))
+                tracker = build(_TRACKER, known, Resources(params={_TRACKER: params}))
+                return ReadyTracker(tracker, wearer_shape(known))
 
             found = evaluate(open_case(folder), ready, stature_m=_STATURE_M, joints="full").score
             sys.stdout.write(

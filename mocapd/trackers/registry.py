@@ -195,15 +195,19 @@ def _wang2011(calibration: Calibration, params: Any, resources: Resources) -> Tr
 
 
 def _hecht2009(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
-    from mocapd.published.hecht2009.build import build_hecht2009_tracker
+    from mocapd.published.hecht2009.tracker import Hecht2009Tracker
+    from mocapd.tracking.tracker_inputs import calibrated_rig, stature_m
 
-    return build_hecht2009_tracker(calibration, params, resources.tracking)
+    rig, stature = calibrated_rig(calibration), stature_m(calibration)
+    return Hecht2009Tracker(rig, stature, params, resources.tracking)
 
 
 def _rao_hodges(calibration: Calibration, params: Any, resources: Resources) -> Tracker:
-    from mocapd.published.rao_hodges.build import build_rao_hodges_tracker
+    from mocapd.published.rao_hodges.tracker import RaoHodgesTracker
+    from mocapd.tracking.tracker_inputs import calibrated_rig, stature_m
 
-    return build_rao_hodges_tracker(calibration, params, resources.tracking)
+    rig, stature = calibrated_rig(calibration), stature_m(calibration)
+    return RaoHodgesTracker(rig, stature, params, resources.tracking)
 
 
 TRACKERS: Mapping[str, TrackerEntry] = MappingProxyType(

@@ -7,8 +7,6 @@ from functools import cache
 import numpy as np
 
 from mocapd.calibration.calibration_record import Calibration, Wearer
-from mocapd.published.hecht2009.build import build_hecht2009_tracker
-from mocapd.published.rao_hodges.build import build_rao_hodges_tracker
 from mocapd.published.wang2011.build import build_wang2011_tracker
 from mocapd.shirt.pose_database.database import PoseDatabase
 from mocapd.sim.renderer import camera_renderers
@@ -20,7 +18,13 @@ from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Frame, FrameSet
 from tests.sim import small
 from tests.sim.simulated_calibration import calibration_of_setup
-from tests.tracking.profiles import auto_tracker, markerless_tracker, shirt_tracker
+from tests.tracking.profiles import (
+    auto_tracker,
+    hecht2009_tracker,
+    markerless_tracker,
+    rao_hodges_tracker,
+    shirt_tracker,
+)
 from tests.tracking.stepping import Stepping
 
 START_NS = 86_400_000_000_000  # a day after boot: times are large on a machine that stays on
@@ -165,6 +169,6 @@ CASES: Mapping[str, Callable[[PoseDatabase], TrackerCase]] = {
     "shirt": lambda database: shirt_case(shirt_tracker, database, "shirt"),
     "wang2011": lambda database: shirt_case(build_wang2011_tracker, database),
     "markerless": lambda _: plain_case(markerless_tracker, "clothes"),
-    "hecht2009": lambda _: plain_case(build_hecht2009_tracker),
-    "rao_hodges": lambda _: plain_case(build_rao_hodges_tracker, ring=True),
+    "hecht2009": lambda _: plain_case(hecht2009_tracker),
+    "rao_hodges": lambda _: plain_case(rao_hodges_tracker, ring=True),
 }

@@ -5,7 +5,8 @@ from collections.abc import Callable
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.each import Each, in_turn
 from mocapd.shirt.pose_database.database import PoseDatabase
-from mocapd.tracking.base import frozen_clock
+from mocapd.trackers.registry import Resources, build
+from mocapd.tracking.base import Tracker, frozen_clock
 from mocapd.tracking.body_tracker import BodyTracker
 from mocapd.tracking.build import build_body_tracker
 
@@ -25,3 +26,13 @@ def markerless_tracker(
 ) -> BodyTracker:
     """By any clothes."""
     return build_body_tracker("markerless", known, None, clothes=True, each=each, now_ns=now_ns)
+
+
+def hecht2009_tracker(known: Calibration) -> Tracker:
+    """The published one by any clothes."""
+    return build("hecht2009", known, Resources())
+
+
+def rao_hodges_tracker(known: Calibration) -> Tracker:
+    """The published one by the visual hull."""
+    return build("rao_hodges", known, Resources())

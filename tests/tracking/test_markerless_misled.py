@@ -10,19 +10,18 @@ import pytest
 from mocapd.calibrate.bump.changed_places import PlacesVerdict, places_of
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.clock import nanoseconds
-from mocapd.published.hecht2009.build import build_hecht2009_tracker
 from mocapd.tracking.base import Track, Tracker
 from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import FrameSet, Tracking
 from tests.tracking.hard_film import CLOSE_PAIR, N_EMPTY, HardFilm, hard_film
-from tests.tracking.profiles import markerless_tracker
+from tests.tracking.profiles import hecht2009_tracker, markerless_tracker
 from tests.tracking.stepping import Stepping
 
 pytestmark = [pytest.mark.kernels, pytest.mark.long]
 
 Build = Callable[[Calibration], Tracker]
 BOTH = pytest.mark.parametrize(
-    "build", [markerless_tracker, build_hecht2009_tracker], ids=["markerless", "hecht2009"]
+    "build", [markerless_tracker, hecht2009_tracker], ids=["markerless", "hecht2009"]
 )
 
 

@@ -23,7 +23,7 @@ from mocapd.published.hecht2009.edge_penalties import (
     radii_m,
 )
 from mocapd.published.hecht2009.evidence import RigEvidence
-from mocapd.published.hecht2009.face.lbp_cascade_kernels import CascadeArrays
+from mocapd.published.hecht2009.face.lbp_cascade import frontal_faces
 from mocapd.published.hecht2009.hanging_body import HangingBody, hang
 from mocapd.published.hecht2009.head.head_track import HeadState, HeadTrack
 from mocapd.published.hecht2009.head.head_tracker import HeadTracker
@@ -85,17 +85,15 @@ class Hecht2009Tracker:
         self,
         rig: Rig,
         stature_m: float,
-        cascade: CascadeArrays,
         params: Params | None = None,
         tracking: TrackingStateParams | None = None,
     ) -> None:
-        """cascade: of frontal faces, see `face.lbp_cascade`."""
         self.params = p = params if params is not None else Params()
         self.rig = rig
         self._stature_m = stature_m
         self._body = build_body(mean_shape(stature_m))
         self._views = RigEvidence(rig, p)
-        self._head = HeadTracker(rig.cameras, stature_m, cascade, p.seed)
+        self._head = HeadTracker(rig.cameras, stature_m, frontal_faces(), p.seed)
         self._tracking = TrackingState(tracking)
         self.probe: Probe = no_probe
         self.reset()

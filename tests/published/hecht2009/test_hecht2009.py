@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from mocapd.body.shape import mean_shape
-from mocapd.published.hecht2009.build import build_hecht2009_tracker
 from mocapd.published.hecht2009.mass_spring.body_points import LIMBS
 from mocapd.published.hecht2009.mass_spring.mass_spring_body import build_body
 from mocapd.published.hecht2009.mass_spring.simulation import relaxed_state
@@ -14,6 +13,7 @@ from mocapd.tracking.base import Track
 from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import FrameSet, Tracking
 from tests.tracking.plain_film import N_EMPTY, PlainFilm, plain_film
+from tests.tracking.profiles import hecht2009_tracker
 from tests.tracking.stepping import Stepping
 
 pytestmark = pytest.mark.kernels
@@ -26,7 +26,7 @@ def film() -> PlainFilm:
 
 @pytest.fixture(scope="module")
 def tracker(film: PlainFilm) -> Stepping:
-    return Stepping(build_hecht2009_tracker(film.known), wearer_shape(film.known))
+    return Stepping(hecht2009_tracker(film.known), wearer_shape(film.known))
 
 
 def run(tracker: Stepping, frames: list[FrameSet]) -> list[Track]:
