@@ -86,6 +86,16 @@ class CannotCreateError(MocapdError):
     exit_code = 73
 
 
+@contextmanager
+def creation_errors(where: object, mend: str, what: str = "cannot be written") -> Iterator[None]:
+    """Turns an OSError into a CannotCreateError; mend: the fix, unless the disk is full."""
+    try:
+        yield
+    except OSError as error:
+        what = f"{what} ({error.strerror})"
+        raise CannotCreateError(what, str(where), mend_of(error, mend)) from None
+
+
 class PermissionDeniedError(MocapdError):
     """The user lacks a right, such as membership of the group `video` (77 EX_NOPERM)."""
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import mocapd
 from mocapd.boundary.folders import require_own_folder
-from mocapd.errors import CannotCreateError, PermissionDeniedError, mend_of
+from mocapd.errors import PermissionDeniedError, creation_errors
 
 
 def prepare_libraries(cache_dir: Path) -> None:
@@ -35,17 +35,13 @@ def use_cache_dir(cache_dir: Path) -> None:
 
 
 def _own_folder(path: Path) -> None:
+    mend = "make the folder writable, or set cache_dir"
     try:
-        path.mkdir(mode=0o700, parents=True, exist_ok=True)
-        require_own_folder(path)
-        tempfile.TemporaryFile(dir=path).close()
+        with creation_errors(path, mend, "the cache cannot be written"):
+            path.mkdir(mode=0o700, parents=True, exist_ok=True)
+            require_own_folder(path)
+            tempfile.TemporaryFile(dir=path).close()
     except PermissionDeniedError as error:
         raise PermissionDeniedError(
             f"the cache {error.what}", error.where, f"{error.fix} as cache_dir"
-        ) from None
-    except OSError as error:
-        raise CannotCreateError(
-            f"the cache cannot be written ({error.strerror})",
-            str(path),
-            mend_of(error, "make the folder writable, or set cache_dir"),
         ) from None

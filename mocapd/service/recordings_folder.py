@@ -6,8 +6,8 @@ import re
 import subprocess
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,12 +21,19 @@ from mocapd.boundary.folders import private_folder
 from mocapd.boundary.listing import shown_in
 from mocapd.boundary.parsing import decode_json
 from mocapd.child_process import child_command
-from mocapd.errors import CannotCreateError, InputError, UnavailableError, mend_of
+from mocapd.errors import (
+    CannotCreateError,
+    InputError,
+    UnavailableError,
+    creation_errors,
+    mend_of,
+)
 from mocapd.quarantine import quarantine
 from mocapd.service.body_recorder import BodyRecorder
 from mocapd.whole_file import whole_file
 
 _log = logging.getLogger(__name__)
+_ROOM = "make room there"
 
 MOST_LISTED = 200
 FORMATS = ("bvh", "glb", "vrma", "csv", "trc", "c3d")
@@ -89,14 +96,8 @@ class Recordings:
         with self._lock:
             if self._recorder is not None:
                 raise UnavailableError("a recording is being made", "recordings", "stop it first")
-            try:
+            with creation_errors(self.folder, _ROOM, "cannot be made"):
                 private_folder(self.folder)
-            except OSError as error:
-                raise CannotCreateError(
-                    f"cannot be made ({error.strerror})",
-                    str(self.folder),
-                    mend_of(error, "make room there"),
-                ) from None
             self._recorder = self._begin(self._new_path()).__enter__()
 
     def _new_path(self) -> Path:
@@ -203,29 +204,18 @@ class Recordings:
     def _quarantine(self, id_: str, error: InputError) -> None:
         """Raises CannotCreateError."""
         path = self._note_path(id_)
-        with _creating(path):
+        with creation_errors(path, _ROOM):
             _log.warning(
                 "%s cannot be used (%s), and is now %s", path, error.what, quarantine(path)
             )
 
     def _write(self, id_: str, note: Note) -> None:
         path = self._note_path(id_)
-        with _creating(path), whole_file(path, private=True) as partial:
+        with creation_errors(path, _ROOM), whole_file(path, private=True) as partial:
             partial.write_bytes(msgspec.json.encode(note))
 
     def _note_path(self, id_: str) -> Path:
         return self.folder / f"{id_}.json"
-
-
-@contextmanager
-def _creating(path: Path) -> Iterator[None]:
-    """Raises CannotCreateError for an OSError."""
-    try:
-        yield
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), mend_of(error, "make room there")
-        ) from None
 
 
 def _exported(path: Path, out: Path) -> BinaryIO:

@@ -24,7 +24,7 @@ from mocapd.capture.recording.recorded_picture import (
 )
 from mocapd.capture.recording.recording_metadata import RecordingMetadata, attachments_of
 from mocapd.clock import NS_PER_S
-from mocapd.errors import CannotCreateError, mend_of
+from mocapd.errors import CannotCreateError, creation_errors
 from mocapd.output_file import OutputFile, kind_by_magic
 from mocapd.outputs import schemas, wire
 from mocapd.outputs.mcap import foxglove_messages, foxglove_scene
@@ -59,18 +59,12 @@ class RecordingWriter:
         self.path, self._params = path, params
         OutputFile(path, _RECORDING, params.force, option="").check_replaceable()
         mode = 0o600 if params.private else 0o666
-        try:
+        with creation_errors(path, "choose another name or place"):
             if params.force:
                 path.unlink(missing_ok=True)
             self._descriptor = os.open(
                 path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, mode
             )
-        except OSError as error:
-            raise CannotCreateError(
-                f"cannot be written ({error.strerror})",
-                str(path),
-                mend_of(error, "choose another name or place"),
-            ) from None
         self._file = os.fdopen(self._descriptor, "wb")
         self._mcap = Writer(
             self._file,
