@@ -6,7 +6,6 @@ import numpy as np
 
 from mocapd.published.hecht2009.cylinders.limb_params import LimbScoreParams
 from mocapd.published.hecht2009.cylinders.limb_score import EDGE, LimbView, limb_penalties
-from mocapd.published.hecht2009.cylinders.occlusion import part_ends
 from mocapd.published.hecht2009.mass_spring.body_points import LIMBS
 from mocapd.published.hecht2009.mass_spring.frusta import NAMES, Frusta
 from mocapd.types import Floats
@@ -21,22 +20,12 @@ PARTS = {
 }  # fmt: skip
 
 
-def radii_m(frusta: Frusta) -> Floats:
-    """Radii (11,2) of each frustum at its start and its end."""
-    return np.stack([frusta.radius_start_m, frusta.radius_end_m], axis=1)
-
-
-def ends_m(frusta: Frusta, points_m: Floats) -> Floats:
-    """Where each frustum of a body of points (16,3) starts and ends, see `part_ends`."""
-    return part_ends(frusta.ends_of(points_m), frusta.start_index, frusta.end_index)
-
-
 def edge_penalties(
     frusta: Frusta, limb: str, points_m: Floats, views: Sequence[LimbView], score: LimbScoreParams
 ) -> Floats:
     """The edge penalty (N,) 0..1 of the visible part of a limb in N places (N,3,3); 1 where nothing is visible."""
     parts = PARTS[limb]
-    penalties = limb_penalties(points_m, radii_m(frusta)[list(parts)], parts, views, score)
+    penalties = limb_penalties(points_m, frusta.radii_m[list(parts)], parts, views, score)
     visible = penalties.visible[..., EDGE].sum(axis=0)
     total = (penalties.visible[..., EDGE] * penalties.mean[..., EDGE]).sum(axis=0)
     return np.where(visible > 0.0, total / np.maximum(visible, 1e-9), 1.0)

@@ -15,13 +15,7 @@ from mocapd.fit.fit_params import TICK_S
 from mocapd.published.hecht2009.cylinders.limb_particles import LimbCloud, step_cloud
 from mocapd.published.hecht2009.cylinders.limb_score import LimbView
 from mocapd.published.hecht2009.cylinders.part_colours import learn, reference_colours
-from mocapd.published.hecht2009.edge_penalties import (
-    PARTS,
-    edge_penalties,
-    ends_m,
-    mean_edge_penalty,
-    radii_m,
-)
+from mocapd.published.hecht2009.edge_penalties import PARTS, edge_penalties, mean_edge_penalty
 from mocapd.published.hecht2009.evidence import RigEvidence
 from mocapd.published.hecht2009.face.lbp_cascade import frontal_faces
 from mocapd.published.hecht2009.hanging_body import HangingBody, hang
@@ -265,7 +259,7 @@ class Hecht2009Tracker:
             )
 
         return step_cloud(
-            cloud, dt_s, radii_m(self._body.frusta)[list(parts)], parts, views,
+            cloud, dt_s, self._body.frusta.radii_m[list(parts)], parts, views,
             constrain if p.particle_constraints else None, self._rng, p.motion, p.score,
         )  # fmt: skip
 
@@ -285,16 +279,16 @@ class Hecht2009Tracker:
 
     def _mark(self, points_m: Floats | None) -> None:
         """Marks the body in every present picture."""
-        ends = None if points_m is None else ends_m(self._body.frusta, points_m)
+        ends = None if points_m is None else self._body.frusta.ends_m(points_m)
         for view in self._views.present:
-            view.mark_body(ends, radii_m(self._body.frusta))
+            view.mark_body(ends, self._body.frusta.radii_m)
 
     def _limb_views(self) -> list[LimbView]:
         reference = reference_colours(self._views.appearance, self.params.score.along)
         return [view.limb_view(reference[view.index]) for view in self._views.present]
 
     def _samples(self, points_m: Floats) -> PartSamples:
-        return self._views.count_samples(ends_m(self._body.frusta, points_m))
+        return self._views.count_samples(self._body.frusta.ends_m(points_m))
 
     def _learn_background(self) -> None:
         """Update the backgrounds outside the body, or everywhere without one."""

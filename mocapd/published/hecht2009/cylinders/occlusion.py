@@ -9,7 +9,7 @@ from mocapd.published.hecht2009.cylinders.occlusion_kernels import (
     index_parts,
 )
 from mocapd.published.hecht2009.cylinders.work_camera import WorkCamera
-from mocapd.types import Floats, Ints
+from mocapd.types import Floats
 
 
 def allocate_occlusion(
@@ -26,11 +26,6 @@ def allocate_occlusion(
         np.zeros((int(np.ceil(height / cell_px)), int(np.ceil(width / cell_px))), np.int64),
         float(cell_px),
     )
-
-
-def part_ends(points_m: Floats, start_index: Ints, end_index: Ints) -> Floats:
-    """Ends (C,2,3) of parts between points (E,3) [m]."""
-    return np.stack([points_m[start_index], points_m[end_index]], axis=1)
 
 
 def fill_occlusion(

@@ -42,20 +42,23 @@ _HALF_HEAD = 0.065  # from the head's middle to chin or crown, in statures
 class Frusta:
     """C frusta in the order of NAMES.
 
-    start_index, end_index (C,): rows of `ends_of`; radius_start_m, radius_end_m (C,): half the breadth in the frontal
-    view; half_head_m: from the head's middle to chin and crown; head_ahead_m: of its middle in front of the point HEAD.
+    index (C,2): rows of `ends_of` where each starts and ends; radii_m (C,2): half the breadth there in the frontal view;
+    half_head_m: from the head's middle to chin and crown; head_ahead_m: of its middle in front of the point HEAD.
     """
 
-    start_index: Ints
-    end_index: Ints
-    radius_start_m: Floats
-    radius_end_m: Floats
+    index: Ints
+    radii_m: Floats
     half_head_m: float
     head_ahead_m: float
 
     def ends_of(self, points_m: Floats) -> Floats:
         """The ends (...,21,3) of a body's points (...,16,3) [m]."""
         return frustum_ends(points_m, self.half_head_m, self.head_ahead_m)
+
+    def ends_m(self, points_m: Floats) -> Floats:
+        """Where each frustum of a body of points (16,3) starts and ends (C,2,3) [m]."""
+        ends: Floats = self.ends_of(points_m)[self.index]
+        return ends
 
 
 def frustum_ends(points_m: Floats, half_head_m: float, head_ahead_m: float) -> Floats:
@@ -92,8 +95,7 @@ def build_frusta(shape: BodyShape, skeleton: Skeleton, rest_m: Floats) -> Frusta
         _end_radii(tube, ends[a], ends[b]) for tube, (a, b) in zip(rings, index, strict=True)
     ])  # fmt: skip
     radii[1], radii[2] = trunk[:2, 0], trunk[1:, 0]
-    start, end = np.array(index).T
-    return Frusta(start, end, radii[:, 0], radii[:, 1], half_head, ahead)
+    return Frusta(np.array(index), radii, half_head, ahead)
 
 
 def trunk_ellipses(shape: BodyShape, skeleton: Skeleton, rest_m: Floats) -> Floats:

@@ -9,7 +9,6 @@ from mocapd.geometry.camera_model import project, to_camera
 from mocapd.published.hecht2009.cylinders.occlusion import (
     allocate_occlusion,
     fill_occlusion,
-    part_ends,
 )
 from mocapd.published.hecht2009.cylinders.occlusion_kernels import is_hidden
 from mocapd.published.hecht2009.cylinders.work_camera import work_camera
@@ -61,12 +60,6 @@ def test_a_body_before_the_last_ones_place_is_forgotten() -> None:
     fill_occlusion(model, work, ENDS_M, RADII_M)
     fill_occlusion(model, work, ENDS_M + [0.0, 0.0, 9.0], RADII_M)  # behind the camera
     assert not is_hidden(model, -1, 160.0, 120.0, 9.0, MARGIN_M)
-
-
-def test_parts_run_between_the_points_that_they_name() -> None:
-    points = np.arange(12.0).reshape(4, 3)
-    got = part_ends(points, np.array([0, 3]), np.array([2, 1]))
-    assert (got == [[points[0], points[2]], [points[3], points[1]]]).all()
 
 
 def test_more_parts_than_bits_are_refused() -> None:

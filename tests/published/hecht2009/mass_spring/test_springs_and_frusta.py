@@ -61,10 +61,10 @@ def test_a_spring_whose_ends_are_one_point_parts_them() -> None:
 
 def test_frusta_cover_the_limbs() -> None:
     frusta = BODY.frusta
-    assert len(NAMES) == len(frusta.start_index) == 11
+    assert len(NAMES) == len(frusta.index) == 11
     ends = frusta.ends_of(BODY.rest_m)
     assert ends.shape == (N_ENDS, 3)
-    by_name = {name: (frusta.start_index[k], frusta.end_index[k]) for k, name in enumerate(NAMES)}
+    by_name = {name: tuple(frusta.index[k]) for k, name in enumerate(NAMES)}
     for name, (a, b, c) in LIMBS.items():
         side = name.split("_")[0]
         upper, lower = ("upper_arm", "forearm") if "arm" in name else ("thigh", "shank")
@@ -81,8 +81,8 @@ def test_frusta_cover_the_limbs() -> None:
 
 def test_radii_are_those_of_a_person_and_taper() -> None:
     frusta = BODY.frusta
-    start = dict(zip(NAMES, frusta.radius_start_m, strict=True))
-    end = dict(zip(NAMES, frusta.radius_end_m, strict=True))
+    start = dict(zip(NAMES, frusta.radii_m[:, 0], strict=True))
+    end = dict(zip(NAMES, frusta.radii_m[:, 1], strict=True))
     for name, low, high in (
         ("left_upper_arm", 0.045, 0.08), ("left_forearm", 0.025, 0.06), ("left_thigh", 0.06, 0.13),
         ("left_shank", 0.035, 0.085), ("upper_trunk", 0.12, 0.2), ("head", 0.05, 0.11),
@@ -94,7 +94,7 @@ def test_girth_makes_limbs_thicker() -> None:
     factors = np.ones(12)
     factors[6], factors[10] = 1.2, 1.3
     thick = build_body(BodyShape(1.75, factors)).frusta
-    ratio = thick.radius_start_m / BODY.frusta.radius_start_m
+    ratio = thick.radii_m[:, 0] / BODY.frusta.radii_m[:, 0]
     assert ratio[3:7] == pytest.approx(1.2, abs=0.02)
     assert ratio[7:] == pytest.approx(1.3, abs=0.02)
 
