@@ -63,11 +63,7 @@ def pose_of(body: BodyChains, place: BodyPlace) -> Pose:
     R = pose_limb(body.whole, place.angles, place.root_turn, place.root_m).R[0]
     every = np.broadcast_to(place.root_turn, (N_JOINTS, 3, 3)).copy()
     for bone, turned in zip(body.whole.bones, R, strict=True):
-        every[INDEX[bone]] = turned
-        for side in ("left", "right"):
-            below = _WITH.get(bone.removeprefix(side)) if bone.startswith(side) else None
-            if below is not None:
-                every[INDEX[side + below]] = turned
+        every[_turned_with(bone)] = turned
     return Pose(place.root_m.copy(), rotations.from_matrix(every))
 
 
@@ -84,9 +80,11 @@ def by_joint(body: BodyChains, values: Floats) -> Floats:
     """(J,): of each joint the value (E,) of the ellipsoid that it turns with; of the trunk's joints the abdomen's."""
     out = np.full(N_JOINTS, values[0])
     for bone, value in zip(body.whole.bones, values, strict=True):
-        out[INDEX[bone]] = value
-        for side in ("left", "right"):
-            below = _WITH.get(bone.removeprefix(side)) if bone.startswith(side) else None
-            if below is not None:
-                out[INDEX[side + below]] = value
+        out[_turned_with(bone)] = value
     return out
+
+
+def _turned_with(bone: str) -> list[int]:
+    """The joints that turn with the bone of an ellipsoid."""
+    names = [bone, *(bone.replace(above, below) for above, below in _WITH.items() if above in bone)]
+    return [INDEX[name] for name in names]
