@@ -38,28 +38,23 @@ class Colourful:
     u_max: float
 
 
-class HistogramSearch:
-    """Buffers for frames of one size, without state between frames. One thread."""
+def histogram_search(
+    pixels: Bytes, mask: Bytes, mask_shift: int, params: HistogramParams
+) -> Colourful:
+    """The colourful place of `pixels` (H,W,3) uint8 BGR.
 
-    def __init__(self, size_px: tuple[int, int], params: HistogramParams) -> None:
-        self.params = params
-        step = self.params.step_px
-        width, height = size_px[0] // step, size_px[1] // step
-        self._bins = np.empty((height, width), dtype=np.uint8)
-        self._integral = np.empty((height + 1, width + 1, BINS), dtype=np.uint16)
-        self._radii: NDArray[np.int64] = np.array(self.params.radii, dtype=np.int64)
-        self._u: Singles = np.empty((len(self._radii), height, width), dtype=np.float32)
-
-    def search(self, pixels: Bytes, mask: Bytes, mask_shift: int) -> Colourful:
-        """The colourful place of `pixels` (H,W,3) uint8 BGR.
-
-        `mask`: foreground hint, non-zero where to look, 2^mask_shift times smaller than the frame.
-        """
-        params = self.params
-        chrominance_bins(pixels, mask, mask_shift, params.step_px, params.min_sum, self._bins)
-        integral_histogram(self._bins, self._integral)
-        uniformity(self._integral, self._radii, params.bin_cap, self._u)
-        return weighted_mean(self._u, self._radii, params.step_px, params.deviation)
+    `mask`: foreground hint, non-zero where to look, 2^mask_shift times smaller than the frame.
+    """
+    step = params.step_px
+    height, width = pixels.shape[0] // step, pixels.shape[1] // step
+    bins = np.empty((height, width), dtype=np.uint8)
+    integral = np.empty((height + 1, width + 1, BINS), dtype=np.uint16)
+    radii: NDArray[np.int64] = np.array(params.radii, dtype=np.int64)
+    u: Singles = np.empty((len(radii), height, width), dtype=np.float32)
+    chrominance_bins(pixels, mask, mask_shift, step, params.min_sum, bins)
+    integral_histogram(bins, integral)
+    uniformity(integral, radii, params.bin_cap, u)
+    return weighted_mean(u, radii, step, params.deviation)
 
 
 def weighted_mean(

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.published.wang2011.chrominance import HistogramSearch
+from mocapd.published.wang2011.chrominance import histogram_search
 from mocapd.published.wang2011.classify_kernels import classify, classify_with_prior, sum_colours
 from mocapd.published.wang2011.drawing import Grid, PatchRenderer
 from mocapd.published.wang2011.mog_background import BackgroundSubtractor, mask_size
@@ -45,7 +45,6 @@ class Wang2011Segmenter:
         self.colours = colours.tolerating(params.shading_sigma, params.noise_sigma)
         self._first_W = W
         self._precision = shade_precision(self.colours)
-        self._search = HistogramSearch(camera.size_px, params.histogram)
         self._background = BackgroundSubtractor(params.background)
         self.reset()
 
@@ -64,7 +63,7 @@ class Wang2011Segmenter:
             mask = np.maximum(mask, self._body)  # a motionless person fades into the background
         if np.count_nonzero(mask) < params.min_foreground * mask.size:
             mask, shift = np.ones((1, 1), np.uint8), 31
-        found = self._search.search(pixels, mask, shift)
+        found = histogram_search(pixels, mask, shift, params.histogram)
         if found.u_max == 0.0:
             return None
         grid = self._grid(found.x_px, found.y_px, params.crop * found.s_px)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mocapd.published.wang2011.chrominance import HistogramParams, HistogramSearch, weighted_mean
+from mocapd.published.wang2011.chrominance import HistogramParams, histogram_search, weighted_mean
 from mocapd.published.wang2011.histogram_kernels import (
     BINS,
     NO_BIN,
@@ -102,8 +102,8 @@ def room_with_shirt(x: int, y: int) -> Bytes:
 
 @pytest.mark.parametrize(("x", "y"), [(150, 150), (480, 300), (80, 400)])
 def test_the_shirt_is_found(x: int, y: int) -> None:
-    found = HistogramSearch((640, 480), HistogramParams()).search(
-        room_with_shirt(x, y), np.ones((1, 1), np.uint8), 31
+    found = histogram_search(
+        room_with_shirt(x, y), np.ones((1, 1), np.uint8), 31, HistogramParams()
     )
     assert np.hypot(found.x_px - x, found.y_px - y) < 20
     assert 54 <= found.s_px <= 200
@@ -115,14 +115,16 @@ def test_a_mask_rules_out_a_colourful_background() -> None:
     image[200:440, 400:620] = np.random.default_rng(4).integers(0, 256, (240, 220, 3))
     mask = np.zeros((120, 160), dtype=np.uint8)
     mask[20:55, 20:55] = 255
-    found = HistogramSearch((640, 480), HistogramParams()).search(image, mask, 2)
+    found = histogram_search(image, mask, 2, HistogramParams())
     assert np.hypot(found.x_px - 150, found.y_px - 150) < 20
 
 
 def test_nothing_in_the_foreground_is_no_colour() -> None:
-    search = HistogramSearch((320, 240), HistogramParams(radii=(2, 4)))
-    found = search.search(
-        np.full((240, 320, 3), 90, dtype=np.uint8), np.zeros((60, 80), np.uint8), 2
+    found = histogram_search(
+        np.full((240, 320, 3), 90, dtype=np.uint8),
+        np.zeros((60, 80), np.uint8),
+        2,
+        HistogramParams(radii=(2, 4)),
     )
     assert found.u_max == 0.0
     assert abs(found.x_px - 160) < 6
