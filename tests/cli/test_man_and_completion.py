@@ -20,6 +20,10 @@ from tests.cli.mocapd_process import COMMAND, mocapd_here
 PATIENCE_S = 120.0
 
 
+def page_of(app: typer.Typer) -> str:
+    return man_page(typer.main.get_command(app))
+
+
 def shown(page: str) -> str:
     """As a reader sees it. Fails on anything that groff warns of."""
     if shutil.which("groff") is None:
@@ -37,7 +41,7 @@ def shown(page: str) -> str:
 
 
 def test_the_page_has_every_command_and_every_option_that_help_shows() -> None:
-    page = man_page(app).replace(r"\-", "-")
+    page = page_of(app).replace(r"\-", "-")
     group = typer.main.get_command(app)
     assert isinstance(group, typer.core.TyperGroup)
     assert len(group.commands) > 15
@@ -51,14 +55,14 @@ def test_the_page_has_every_command_and_every_option_that_help_shows() -> None:
 
 def test_the_page_has_every_exit_code_of_status() -> None:
     codes = f"{NOT_RUNNING}, {UNKNOWN}, {UNABLE}, {SLOW}"
-    assert f"\\fB{codes}\\fR\nof status alone" in man_page(app)
+    assert f"\\fB{codes}\\fR\nof status alone" in page_of(app)
 
 
 def test_groff_shows_it_without_a_warning() -> None:
-    text = shown(man_page(app))
+    text = shown(page_of(app))
     assert "mocapd status --json | jq .state" in text
     assert re.search(r"78\s+the configuration or a calibration is wrong", text)
-    assert man_page(app) == man_page(app)
+    assert page_of(app) == page_of(app)
 
 
 def test_nothing_that_a_help_says_is_taken_for_a_command_of_roff() -> None:
@@ -77,7 +81,7 @@ def test_nothing_that_a_help_says_is_taken_for_a_command_of_roff() -> None:
     def other() -> None:
         """Tame."""
 
-    text = shown(man_page(wild))
+    text = shown(page_of(wild))
     for told in (".TH OTHER 1", r".so /etc/passwd \fBbold\n 'quoted' ~^`", '\'ab "quoted" -- 3'):
         assert told in text
     assert "OTHER(1)" not in text
@@ -86,7 +90,7 @@ def test_nothing_that_a_help_says_is_taken_for_a_command_of_roff() -> None:
 def test_the_command_prints_the_page() -> None:
     done = mocapd_here(dict(os.environ), "man")
     assert (done.code, done.err) == (0, "")
-    assert done.out == man_page(app)
+    assert done.out == page_of(app)
 
 
 @pytest.fixture

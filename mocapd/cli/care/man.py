@@ -1,12 +1,13 @@
 """`mocapd man`"""
 
+import typer
 
-def man() -> None:
+
+def man(context: typer.Context) -> None:
     """Print the manual page of mocapd, as man(1) reads it.
 
     Example: mocapd man > ~/.local/share/man/man1/mocapd.1
     """
     from mocapd.cli.care.man_page import man_page
-    from mocapd.cli.command_list import app
 
-    print(man_page(app), end="")
+    print(man_page(context.find_root().command), end="")

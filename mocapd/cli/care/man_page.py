@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import typer
-import typer.main
+import typer.core
 
 import mocapd
 
@@ -43,9 +43,8 @@ _ESCAPES = (
 _NOT_ASCII = re.compile(r"[^\x20-\x7e]")
 
 
-def man_page(app: typer.Typer) -> str:
+def man_page(group: "Command") -> str:
     """The whole page; deterministic for a version."""
-    group = typer.main.get_command(app)
     assert isinstance(group, typer.core.TyperGroup)
     top = typer.Context(group, info_name="mocapd")
     lines = [
