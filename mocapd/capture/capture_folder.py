@@ -10,7 +10,7 @@ from typing import Any
 from mocapd.boundary.files import is_absent, is_file, is_folder
 from mocapd.boundary.listing import shown_in
 from mocapd.boundary.numbers import brief, finite_number
-from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, FileSource, probe_video, size_error
+from mocapd.capture.file import FASTEST_HZ, SLOWEST_HZ, FileSource, check_size, probe_video
 from mocapd.capture.frame_groups import as_set, due_frames, half_period_ns
 from mocapd.capture.pace import Pace
 from mocapd.capture.video_times import stored_times
@@ -148,8 +148,7 @@ def _camera(folder: Path, entry: dict[str, Any], size_px: tuple[int, int]) -> Re
     file = _video_name(folder, entry)
     video = folder / file
     info = probe_video(video)
-    if info.size_px != size_px:
-        raise size_error(str(video), name, info.size_px, size_px)
+    check_size(str(video), name, info.size_px, size_px)
     offset_s = entry.get("time_offset_s", 0.0)
     stated_hz = _number(entry.get("fps", info.fps_hz), "fps", SLOWEST_HZ, FASTEST_HZ, where)
     times = stored_times(video, _TIMED_FRAMES)

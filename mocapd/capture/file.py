@@ -140,8 +140,7 @@ class FileSource:
         """Raises InputError (missing, damaged) or ConfigError (another size than its calibration)."""
         self.close()
         info = probe_video(self.path)
-        if self._size_px is not None and info.size_px != self._size_px:
-            raise size_error(str(self.path), self.name, info.size_px, self._size_px)
+        check_size(str(self.path), self.name, info.size_px, self._size_px)
         self._fps_hz = self._asked_fps_hz or info.fps_hz
         self._frames = info.frames
         self._file_fps_hz = info.fps_hz

@@ -4,7 +4,7 @@ import logging
 import threading
 from dataclasses import replace
 
-from mocapd.capture.file import size_error
+from mocapd.capture.file import check_size
 from mocapd.capture.remote import camera_wire
 from mocapd.capture.remote.arrival_limit import ArrivalLimit
 from mocapd.capture.remote.camera_wire import CameraState, Done, Order
@@ -187,8 +187,7 @@ class RemoteSource:
         if state.state != "live":
             what, fix = _trouble(state)
             raise UnavailableError(what, f"{self.name} at {node}", fix)
-        if self._size_px is not None and state.size_px != self._size_px:
-            raise size_error(self._address.place, self.name, state.size_px, self._size_px)
+        check_size(self._address.place, self.name, state.size_px, self._size_px)
         return state
 
     def _learn_clock(self, link: RemoteLink) -> None:
