@@ -75,7 +75,7 @@ def project(
     height, -inf where it is not known; dt_s scales the give of springs.
     """
     ends, lengths, compliance, swings, hinges, trunk, arms, pairs, gaps, clearance = constraints
-    spring_rows, swing_rows, hinge_rows, arm_rows, pair_rows, held = active
+    springs, swing_rows, hinge_rows, arm_rows, pair_rows, held = active
     n_springs = lengths.shape[0]
     give, shares, multipliers = np.empty(n_springs), np.empty(n_springs), np.empty(n_springs)
     frames = np.empty((2, 3, 3))
@@ -83,8 +83,8 @@ def project(
     w = np.zeros(points.shape[0])
     for i in range(moved.shape[0]):
         w[moved[i]] = inverse_mass[moved[i]]
-    for k in range(spring_rows.shape[0]):
-        s = spring_rows[k]
+    for k in range(springs.shape[0]):
+        s = springs[k]
         give[s] = compliance[s] / (dt_s * dt_s)
         both = w[ends[s, 0]] + w[ends[s, 1]]
         shares[s] = 1.0 / (both + give[s]) if both > 0.0 else 0.0
@@ -95,7 +95,7 @@ def project(
         for s in range(n_springs):
             multipliers[s] = 0.0
         for n in range(iterations):
-            sweep_springs(body, w, ends, lengths, give, shares, spring_rows, multipliers)
+            sweep_springs(body, w, ends, lengths, give, shares, springs, multipliers)
             if (n + 1) % every != 0:
                 continue
             span_frames(body, frames)
