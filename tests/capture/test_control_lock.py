@@ -1,5 +1,7 @@
 """Locking and giving back controls, exposures that do not flicker, and what fits on a USB bus."""
 
+import errno
+import os
 from pathlib import Path
 
 import pytest
@@ -140,6 +142,26 @@ def test_a_node_without_controls_has_none_and_an_absent_one_is_unavailable(tmp_p
     assert NodeControls(plain).write(Control.GAIN, 3) is None
     with pytest.raises(UnavailableError):
         NodeControls(tmp_path / "video9").read(Control.GAIN)
+
+
+@pytest.mark.parametrize("code", [errno.EBUSY, errno.ETIMEDOUT, errno.EREMOTE, errno.EPROTO])
+def test_a_control_that_does_not_answer_keeps_no_camera_closed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: int
+) -> None:
+    """uvcvideo passes a camera's "not ready" on as EBUSY, and its silence as ETIMEDOUT."""
+    node = tmp_path / "video0"
+    node.touch()
+
+    def refuse(*_: object) -> bytes:
+        raise OSError(code, os.strerror(code))
+
+    monkeypatch.setattr("mocapd.capture.webcam.v4l2_ioctl.fcntl.ioctl", refuse)
+    (result,) = apply_controls(NodeControls(node), Controls(gain=3))
+    assert (result.name, result.is_applied) == ("gain", False)
+    assert NodeControls(node).range(Control.GAIN) is None
+    code = errno.ENODEV
+    with pytest.raises(UnavailableError, match="unplugged"):
+        apply_controls(NodeControls(node), Controls(gain=3))
 
 
 def test_asking_for_controls_leaves_no_descriptor_open(tmp_path: Path) -> None:

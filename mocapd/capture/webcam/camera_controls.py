@@ -45,7 +45,6 @@ _IDS: Mapping[Control, int] = MappingProxyType(
     }
 )
 _POWER_LINE_CODES: Mapping[int, int] = MappingProxyType({0: 0, 50: 1, 60: 2})
-_REFUSED = (errno.EACCES, errno.EINVAL, errno.EIO, errno.ENOTTY, errno.ERANGE, errno.EPIPE)
 
 
 def power_line_code(mains_hz: int) -> int:
@@ -81,7 +80,8 @@ class NodeControls:
             try:
                 return query_control(fd, _IDS[control])
             except OSError as error:
-                raise self._gone(error) from None
+                self._check_present(error)
+                return None
 
     def read(self, control: Control) -> int | None:
         """See ControlDevice."""
@@ -94,19 +94,18 @@ class NodeControls:
             try:
                 set_control(fd, _IDS[control], value)
             except OSError as error:
-                if error.errno not in _REFUSED:
-                    raise self._gone(error) from None
+                self._check_present(error)
             return self._read(fd, control)
 
     def _read(self, fd: int, control: Control) -> int | None:
         try:
             return get_control(fd, _IDS[control])
         except OSError as error:
-            if error.errno in _REFUSED:
-                return None
-            raise self._gone(error) from None
+            self._check_present(error)
+            return None
 
-    def _gone(self, error: OSError) -> UnavailableError:
-        return UnavailableError(
-            f"its controls do not answer ({error.strerror})", str(self._node), "plug it in again"
-        )
+    def _check_present(self, error: OSError) -> None:
+        """Raises UnavailableError when the camera is absent. Any other error is one control's: cameras answer some
+        with "not ready", or not at all, and deliver pictures."""
+        if error.errno == errno.ENODEV:
+            raise UnavailableError("was unplugged", str(self._node), "plug it in again") from None

@@ -89,18 +89,10 @@ def is_streaming_elsewhere(fd: int) -> bool:
 
 
 def query_control(fd: int, control_id: int) -> ControlRange | None:
-    """VIDIOC_QUERYCTRL: None for a control that the camera does not have or that cannot be set.
-
-    Raises OSError (ENODEV: unplugged).
-    """
-    try:
-        raw = fcntl.ioctl(
-            fd, _QUERY_CONTROL, struct.pack("I", control_id).ljust(_QUERYCTRL.size, b"\0")
-        )
-    except OSError as error:
-        if error.errno in (errno.EINVAL, errno.ENOTTY):
-            return None
-        raise
+    """VIDIOC_QUERYCTRL: None for a control that cannot be set. Raises OSError (EINVAL: the camera lacks it)."""
+    raw = fcntl.ioctl(
+        fd, _QUERY_CONTROL, struct.pack("I", control_id).ljust(_QUERYCTRL.size, b"\0")
+    )
     _id, _kind, _name, low, high, step, _default, flags, *_ = _QUERYCTRL.unpack(raw)
     if flags & (_FLAG_DISABLED | _FLAG_READ_ONLY):
         return None
