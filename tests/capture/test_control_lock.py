@@ -115,11 +115,11 @@ def test_what_was_not_applied_shows() -> None:
     del device.held[Control.POWER_LINE]
     wanted = Controls(gain=999, focus=30, dynamic_framerate=False, power_line_hz=50)
     results = apply_controls(device, wanted)
-    assert {one.name: (one.asked, one.got) for one in results if not one.is_applied} == {
-        "gain": (999, 255),
-        "autofocus": (0, -1),
-        "focus": (30, -1),
-        "power_line_hz": (1, -1),
+    assert {one.control: (one.asked, one.got) for one in results if not one.is_applied} == {
+        Control.GAIN: (999, 255),
+        Control.AUTOFOCUS: (0, None),
+        Control.FOCUS: (30, None),
+        Control.POWER_LINE: (1, None),
     }
     assert device.held[Control.DYNAMIC_FRAMERATE] == 0
 
@@ -157,7 +157,7 @@ def test_a_control_that_does_not_answer_keeps_no_camera_closed(
 
     monkeypatch.setattr("mocapd.capture.webcam.v4l2_ioctl.fcntl.ioctl", refuse)
     (result,) = apply_controls(NodeControls(node), Controls(gain=3))
-    assert (result.name, result.is_applied) == ("gain", False)
+    assert (result.control, result.got) == (Control.GAIN, None)
     assert NodeControls(node).range(Control.GAIN) is None
     code = errno.ENODEV
     with pytest.raises(UnavailableError, match="unplugged"):

@@ -60,11 +60,11 @@ class Controls:
 
 @dataclass(frozen=True, slots=True)
 class ControlResult:
-    """A control's requested and actual value; `got` is -1 when the camera lacks the control."""
+    """The requested and the actual value, as V4L2 counts; `got` is None when the camera lacks the control."""
 
-    name: str
+    control: Control
     asked: int
-    got: int
+    got: int | None
 
     @property
     def is_applied(self) -> bool:
@@ -93,8 +93,7 @@ def control_steps(controls: Controls) -> dict[str, int]:
 
 def apply_controls(device: ControlDevice, controls: Controls) -> tuple[ControlResult, ...]:
     """Sets all given controls, and reads them back. Raises UnavailableError."""
-    results = []
-    for name, value in control_steps(controls).items():
-        got = device.write(_CONTROLS[name], value)
-        results.append(ControlResult(name, value, -1 if got is None else got))
-    return tuple(results)
+    return tuple(
+        ControlResult(_CONTROLS[name], value, device.write(_CONTROLS[name], value))
+        for name, value in control_steps(controls).items()
+    )

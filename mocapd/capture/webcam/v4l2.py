@@ -237,7 +237,8 @@ class V4l2Source:
             )
         for c in controls:
             if not c.is_applied:
-                _LOG.warning("%s: %s is %g, asked for %g", self.name, c.name, c.got, c.asked)
+                now = "absent or silent" if c.got is None else c.got
+                _LOG.warning("%s: %s is %s, asked for %d", self.name, c.control, now, c.asked)
 
 
 def _other_mode(one: WebcamSettings, other: WebcamSettings) -> bool:
