@@ -5,6 +5,7 @@ import logging
 import os
 import platform
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,13 +35,16 @@ def is_prepared(config: "Config", what: str = "") -> bool:
 
 def remember(config: "Config", what: str = "") -> None:
     """Marks it as prepared. Logs a warning when the marker cannot be written."""
-    marker, now = config.cache_dir / MARKER, _fingerprint(config, what)
+    marker = config.cache_dir / MARKER
+    # what is prepared for simulated webcams includes what real ones need
+    now = {_fingerprint(config, what), _fingerprint(replace(config, camera=()), what)}
     done = _read_fingerprints(marker)
-    if now in done:
+    new = sorted(now.difference(done))
+    if not new:
         return
     try:
         with whole_file(marker) as partial:
-            partial.write_text("\n".join([*done[1 - REMEMBERED :], now]) + "\n", "utf-8")
+            partial.write_text("\n".join([*done, *new][-REMEMBERED:]) + "\n", "utf-8")
     except OSError as error:
         _log.warning(
             "%s cannot be written (%s): the next start prepares everything again",

@@ -79,6 +79,19 @@ def test_who_tries_all_trackers_prepares_each_once(tmp_path: Path) -> None:
     assert all(is_prepared(config, part) for config, part in tried)
 
 
+def test_a_demo_prepares_for_real_webcams_too_but_not_the_reverse(tmp_path: Path) -> None:
+    """After `make demo` the doctor announced a minute of compiling, which then took no time."""
+    real, simulated = (
+        Config(cache_dir=tmp_path, camera=(CameraSection("a", source),))
+        for source in ("/dev/video0", "sim:living_room#cam0")
+    )
+    remember(real)
+    assert not is_prepared(simulated)
+    (tmp_path / MARKER).unlink()
+    remember(simulated)
+    assert is_prepared(real)
+
+
 def test_a_database_that_was_made_is_not_looked_at_by_the_next_setup(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
