@@ -73,7 +73,9 @@ mocapd completion fish >"$stage/usr/share/fish/vendor_completions.d/mocapd.fish"
 doc=$stage/usr/share/doc/mocapd
 { cat "$root/LICENSE"; echo; cat "$root/THIRD_PARTY_NOTICES.md"; } >"$doc/copyright"
 gzip -9n <"$root/CHANGELOG.md" >"$doc/changelog.gz"
-cp -r "$root/docs/." "$root/README.md" "$doc"
+# as in the checkout, so that their links lead somewhere; clients/ and lab/ are not in the package
+cp -r "$root"/*.md "$root/docs" "$doc"
+ln -s "../../../${libraries#"$stage/usr/"}/mocapd" "$doc/mocapd"
 
 # as dpkg-gencontrol counts [KiB]: what a folder takes is another matter on each file system
 size=$(find "$stage" -mindepth 1 -printf '%y %s\n' | awk '{ kib += $1 == "f" ? int(($2 + 1023) / 1024) : 1 } END { print kib }')

@@ -4,6 +4,7 @@ That it installs, runs and goes is shown under a real systemd: tests/vm/deb_proo
 """
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -118,10 +119,20 @@ def test_everything_around_the_program_is_placed(unpacked: Path) -> None:
     for path in (
         *("usr/lib/sysusers.d/mocapd.conf", "usr/share/man/man1/mocapd.1.gz"),
         "usr/share/bash-completion/completions/mocapd",
-        *("usr/share/doc/mocapd/setup.md", "usr/share/doc/mocapd/images/setup_room.jpg"),
+        *("usr/share/doc/mocapd/docs/README.md", "usr/share/doc/mocapd/docs/images/setup_room.jpg"),
         *("usr/share/doc/mocapd/copyright", "usr/share/doc/mocapd/examples/network.conf.example"),
     ):
         assert (unpacked / path).stat().st_size > 0
+
+
+def test_the_links_of_its_documents_lead_to_others(unpacked: Path) -> None:
+    """All but those to clients and the lab, which are not in the package."""
+    doc = unpacked / "usr/share/doc/mocapd"
+    for document in (doc / "README.md", *(doc / "docs").glob("*.md")):
+        for link in re.findall(r"\]\(([^)#\s]+)", document.read_text("utf-8")):
+            target = Path(os.path.normpath(document.parent / link))
+            if "://" not in link and not {"clients", "lab"} & set(target.relative_to(doc).parts):
+                assert target.exists(), f"{document.name}: {link}"
 
 
 def test_an_update_asks_before_it_changes_the_configuration(unpacked: Path) -> None:
