@@ -249,7 +249,7 @@ def test_whoever_connects_may_read_but_not_write() -> None:
         assert subscriber.try_recv() is None
 
 
-def test_a_taken_port_names_its_holder_and_both_ways_out() -> None:
+def test_a_taken_port_names_its_holder_and_the_ways_out() -> None:
     with socket.create_server(("127.0.0.1", 0)) as holder:
         port = holder.getsockname()[1]
         sink = ZenohSink(Params(port=port))
@@ -258,6 +258,7 @@ def test_a_taken_port_names_its_holder_and_both_ways_out() -> None:
     text = str(caught.value)
     assert f"port {port} is taken by" in text
     assert f"(pid {os.getpid()})" in text
+    assert "end it" in text
     assert f'zenoh.connect = ["tcp/127.0.0.1:{port}"]' in text
     assert "another zenoh.port" in text
     assert "\n" not in text

@@ -51,7 +51,7 @@ def _explain_error(params: Params, text: str) -> MocapdError:
         return UnavailableError(
             f"port {port} is taken by {holder}" if holder else f"port {port} is taken",
             taken,
-            f'join it with zenoh.connect = ["tcp/127.0.0.1:{port}"] if it is a Zenoh router, '
+            f'end it, join it with zenoh.connect = ["tcp/127.0.0.1:{port}"] if it is a Zenoh router, '
             f"or choose another {port_key}",
         )
     if FORBIDDEN in text:
