@@ -1,13 +1,11 @@
 """`mocapd demo`"""
 
 import shlex
-import shutil
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mocapd.app.terminal.own_command import own_command
 from mocapd.cli.options import ConfigOption, SetOption, VrmOption, effective_config, vrm_flags
 from mocapd.cli.run import run_with
 
@@ -50,10 +48,7 @@ def watch_command(config: "Config") -> str:
 
     if not zenoh_section(config.outputs).enabled:
         return ""
-    own = Path(sys.executable).parent / "mocapd"
-    on_path = shutil.which("mocapd")
-    name = "mocapd" if on_path and Path(on_path) == own else str(own)
-    words = [name, "watch"]
+    words = [own_command(), "watch"]
     port = zenoh_section(config.outputs).port
     if port != ZenohSection().port:
         words += ["--set", f"zenoh.port={port}"]

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import mocapd as package
+from mocapd.app.terminal.own_command import own_command
 from mocapd.cli.demo import watch_command
 from mocapd.config.sections import Config
 from mocapd.outputs.output_table import ZenohSection
@@ -156,3 +157,18 @@ def test_the_demo_prints_a_command_for_the_second_terminal() -> None:
     assert command[1:] == ["watch", "--set", "zenoh.port=7448"]
     assert shlex.split(watch_command(Config()))[1:] == ["watch"]
     assert watch_command(Config(outputs={"zenoh": ZenohSection(enabled=False)})) == ""
+
+
+def test_a_command_that_the_shell_finds_by_a_link_is_named_without_its_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """pipx and the Debian package make such a link."""
+    own, links = tmp_path / "environment" / "mocapd", tmp_path / "bin"
+    for folder in (own.parent, links):
+        folder.mkdir()
+    own.touch(0o755)
+    monkeypatch.setattr("sys.executable", str(own.parent / "python"))
+    monkeypatch.setenv("PATH", str(links))
+    assert own_command() == str(own)
+    (links / "mocapd").symlink_to(own)
+    assert own_command() == "mocapd"

@@ -5,6 +5,7 @@ import time
 from typing import TYPE_CHECKING
 
 from mocapd.app.daemon.patient_imports import PatientImports
+from mocapd.app.terminal.own_command import own_command
 from mocapd.errors import MocapdError
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ class DaemonPage:
             _log.warning("no page: %s", error)
             return
         self._server = server
-        _log.info("`mocapd calibrate` opens the page with the live view and the setup")
+        _log.info("`%s calibrate` opens the page with the live view and the setup", own_command())
 
     def _runs_on_saved(self) -> bool:
         """True if a new session would use the saved calibration."""
