@@ -68,9 +68,9 @@ def export(
     motion, note = prepared_motion(recorded.motion, to, options)
     write_export(motion, to, target)
     gaps = f", {int(motion.gap.sum())} of them in gaps" if motion.gap.any() else ""
-    lost = f"; {recorded.lost} frames were without a person" if recorded.lost else ""
+    lost = f"; frames without a person: {recorded.lost}" if recorded.lost else ""
     others = (
-        f"; {recorded.other_skeleton} frames of another skeleton were left out"
+        f"; left out, frames of another skeleton: {recorded.other_skeleton}"
         if recorded.other_skeleton
         else ""
     )
