@@ -39,25 +39,36 @@ from mocapd.{callee}_kernels import scaled
 def twice(x):
     return 2.0 * scaled(x)
 """
+# Each version is used in a process of its own, forked where numba is imported and no kernel is known.
 PROGRAM = """\
+import os
 import sys
 from pathlib import Path
 folder, cache = Path(sys.argv[1]), Path(sys.argv[2])
 from mocapd.app.libraries import use_cache_dir
-import os
 os.environ["NUMBA_CACHE_DIR"] = str(cache / "numba")
 use_cache_dir(cache)
 import mocapd
 import mocapd.kernels.locator as locator
 mocapd.__path__.append(str(folder))
 locator._PACKAGE = folder
-from mocapd.caller_kernels import twice
 from lab.compile_events import compile_events
-with compile_events() as compiled:
-    result = twice(3.0)
-print(result, *sorted(one.function for one in compiled if one.module.startswith("mocapd.")))
-if not compiled and "scipy.linalg" in sys.modules:
-    print("with what only compiling needs, for a fifth of a second")
+
+def use():
+    from mocapd.caller_kernels import twice
+    with compile_events() as compiled:
+        result = twice(3.0)
+    print(result, *sorted(one.function for one in compiled if one.module.startswith("mocapd.")), end="")
+    if not compiled and "scipy.linalg" in sys.modules:
+        print(" with what only compiling needs, for a fifth of a second", end="")
+    print(flush=True)
+
+for _ in sys.stdin:
+    if os.fork() == 0:
+        use()
+        os._exit(0)
+    if os.wait()[1]:
+        sys.exit("a version's process ended badly")
 """
 
 
@@ -65,8 +76,19 @@ class Kernels:
     """Two modules of kernels, one of which calls the other, as an upgrade may change them."""
 
     def __init__(self, folder: Path) -> None:
-        self.folder, self.cache = folder / "mocapd", folder / "cache"
+        self.folder, cache = folder / "mocapd", folder / "cache"
         self.folder.mkdir()
+        command = [sys.executable, "-B", "-c", PROGRAM, str(self.folder), str(cache)]
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
+
+    def __enter__(self) -> "Kernels":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with self._process as process:  # its input ends
+            process.communicate()
 
     def said(
         self,
@@ -83,21 +105,25 @@ class Kernels:
             above + CALLEE.format(scale=scale, words=words, term=term)
         )
         (self.folder / "caller_kernels.py").write_text(CALLER.format(option=option, callee=callee))
-        command = [sys.executable, "-c", PROGRAM, str(self.folder), str(self.cache)]
-        return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._process.stdin.write("\n")
+        self._process.stdin.flush()
+        return self._process.stdout.readline().strip()
 
 
 def test_code_is_kept_until_a_kernel_or_one_that_it_calls_changes(tmp_path: Path) -> None:
     """Also where the callee is of another file, or only a constant or an option differs; words change nothing. Kept code is
     loaded without scipy's linear algebra."""
-    kernels = Kernels(tmp_path)
-    assert kernels.said() == "6.0 scaled twice"
-    assert kernels.said(words="Other words.", above="# a comment\n\n") == "6.0"
-    assert kernels.said(scale=2) == "12.0 scaled twice"
-    assert kernels.said(term="(x + 1.0)") == "8.0 scaled twice"
-    assert kernels.said(option=", fastmath=True") == "6.0 twice"
-    assert kernels.said() == "6.0"  # an earlier version's is there still
-    assert kernels.said(callee="moved") == "6.0 scaled twice"  # the caller's code names its module
+    with Kernels(tmp_path) as kernels:
+        assert kernels.said() == "6.0 scaled twice"
+        assert kernels.said(words="Other words.", above="# a comment\n\n") == "6.0"
+        assert kernels.said(scale=2) == "12.0 scaled twice"
+        assert kernels.said(term="(x + 1.0)") == "8.0 scaled twice"
+        assert kernels.said(option=", fastmath=True") == "6.0 twice"
+        assert kernels.said() == "6.0"  # an earlier version's is there still
+        # the caller's code names its module
+        assert kernels.said(callee="moved") == "6.0 scaled twice"
 
 
 def test_the_trackers_kernels_use_nothing_of_numpy_that_takes_long_to_compile_and_to_load() -> None:
