@@ -30,7 +30,7 @@ from mocapd.sim.scenario import load_scenario
 
 if TYPE_CHECKING:
     from mocapd.shirt.pose_database.database import PoseDatabase
-    from mocapd.sim.scenario import Scenario
+    from mocapd.sim.scenario import CameraSpec, Scenario
 
 SCENARIO = "living_room"
 TRACKERS = {"shirt": "shirt", "clothes": "markerless", "auto": "auto"}
@@ -43,9 +43,22 @@ def _quiet(*_: object) -> None:
 
 
 def _scenario() -> "Scenario":
-    """The demo's, with few frames."""
+    """The demo's, with few frames, and a quarter of the pixels: kernels do not depend on either."""
     scenario = load_scenario(asset_path(f"scenarios/{SCENARIO}.toml"))
-    return replace(scenario, fps_hz=_FRAMES / scenario.loop_s)
+    cameras = [_halved(camera) for camera in scenario.cameras]
+    return replace(scenario, fps_hz=_FRAMES / scenario.loop_s, cameras=cameras)
+
+
+def _halved(camera: "CameraSpec") -> "CameraSpec":
+    (width, height), focal_px, centre_px = camera.size_px, camera.focal_px, camera.centre_px
+    assert focal_px is not None
+    assert centre_px is not None
+    return replace(
+        camera,
+        size_px=(width // 2, height // 2),
+        focal_px=(focal_px[0] / 2, focal_px[1] / 2),
+        centre_px=(centre_px[0] / 2, centre_px[1] / 2),
+    )
 
 
 def _small_database(cache: Path) -> "PoseDatabase":
