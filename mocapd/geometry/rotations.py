@@ -100,35 +100,42 @@ def log(q_xyzw: Floats) -> Floats:
 
 def to_matrix(q_xyzw: Floats) -> Floats:
     """Quaternions (...,4) to matrices (...,3,3)."""
-    x, y, z, w = np.moveaxis(np.asarray(q_xyzw, dtype=float), -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    q = np.asarray(q_xyzw, dtype=float)
+    x, y, z, w = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    R = np.empty((*q.shape[:-1], 3, 3))
+    R[..., 0, 0] = 1 - 2 * (y * y + z * z)
+    R[..., 0, 1] = 2 * (x * y - z * w)
+    R[..., 0, 2] = 2 * (x * z + y * w)
+    R[..., 1, 0] = 2 * (x * y + z * w)
+    R[..., 1, 1] = 1 - 2 * (x * x + z * z)
+    R[..., 1, 2] = 2 * (y * z - x * w)
+    R[..., 2, 0] = 2 * (x * z - y * w)
+    R[..., 2, 1] = 2 * (y * z + x * w)
+    R[..., 2, 2] = 1 - 2 * (x * x + y * y)
+    return R
 
 
 def from_matrix(R: Floats) -> Floats:
     """Rotation matrices (...,3,3) to quaternions (...,4), by the largest of the four squared components."""
     R = np.asarray(R, dtype=float)
     m00, m11, m22 = R[..., 0, 0], R[..., 1, 1], R[..., 2, 2]
-    squares = np.stack(
-        [1 + m00 - m11 - m22, 1 - m00 + m11 - m22, 1 - m00 - m11 + m22, 1 + m00 + m11 + m22], -1
-    )
     sx, sy, sz = R[..., 2, 1], R[..., 0, 2], R[..., 1, 0]
     tx, ty, tz = R[..., 1, 2], R[..., 2, 0], R[..., 0, 1]
-    candidates = np.stack(
-        [
-            np.stack([squares[..., 0], sz + tz, sy + ty, sx - tx], -1),
-            np.stack([sz + tz, squares[..., 1], sx + tx, sy - ty], -1),
-            np.stack([sy + ty, sx + tx, squares[..., 2], sz - tz], -1),
-            np.stack([sx - tx, sy - ty, sz - tz, squares[..., 3]], -1),
-        ],
-        axis=-2,
-    )
-    best = np.argmax(squares, axis=-1)
-    return canonical(np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :])
+    # row i: four times component i of the quaternion, multiplied by all four
+    products = np.empty((*R.shape[:-2], 4, 4))
+    products[..., 0, 0] = 1 + m00 - m11 - m22
+    products[..., 1, 1] = 1 - m00 + m11 - m22
+    products[..., 2, 2] = 1 - m00 - m11 + m22
+    products[..., 3, 3] = 1 + m00 + m11 + m22
+    products[..., 0, 1] = products[..., 1, 0] = sz + tz
+    products[..., 0, 2] = products[..., 2, 0] = sy + ty
+    products[..., 1, 2] = products[..., 2, 1] = sx + tx
+    products[..., 0, 3] = products[..., 3, 0] = sx - tx
+    products[..., 1, 3] = products[..., 3, 1] = sy - ty
+    products[..., 2, 3] = products[..., 3, 2] = sz - tz
+    flat = products.reshape(-1, 4, 4)
+    best = np.argmax(flat[:, range(4), range(4)], axis=-1)
+    return canonical(flat[range(len(flat)), best].reshape(*R.shape[:-2], 4))
 
 
 def angle_rad(a_xyzw: Floats, b_xyzw: Floats) -> Floats:

@@ -43,5 +43,11 @@ def _axes(along: Floats, forward: Floats) -> Floats:
     y = along / math.sqrt(along @ along)
     z = forward - (forward @ y) * y
     z /= math.sqrt(z @ z)
-    x = [y[1] * z[2] - y[2] * z[1], y[2] * z[0] - y[0] * z[2], y[0] * z[1] - y[1] * z[0]]
-    return np.stack([x, y, z], axis=-1)
+    (y0, y1, y2), (z0, z1, z2) = y.tolist(), z.tolist()
+    return np.array(
+        [
+            [y1 * z2 - y2 * z1, y0, z0],
+            [y2 * z0 - y0 * z2, y1, z1],
+            [y0 * z1 - y1 * z0, y2, z2],
+        ]
+    )
