@@ -85,6 +85,8 @@ def perspective_jacobians(xy: Floats, depth_m: Floats) -> Floats:
 
 def undistort(dist: Floats, xy_distorted: Floats, iterations: int = 20) -> Floats:
     """The inverse of `distort` by fixed-point iteration; converges for the lenses of ordinary webcams."""
+    if not dist.any():
+        return xy_distorted.copy()
     k1, k2, p1, p2, k3 = dist
     # contiguous, as pictures' grids have many points
     x_distorted, y_distorted = (xy_distorted[..., i].copy() for i in (0, 1))
