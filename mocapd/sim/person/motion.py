@@ -1,7 +1,6 @@
 """The person's motion as a pure function of time: keyframed limbs, stepping feet, slow sway."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,13 +8,11 @@ from mocapd.body.skeleton import INDEX, N_JOINTS, global_from_local
 from mocapd.geometry import rotations
 from mocapd.sim.person.footsteps import FootTrack, foot_tracks
 from mocapd.sim.person.leg_shape import leg_rotations
+from mocapd.sim.person.monotone_cubic import MonotoneCubic, monotone_cubic
 from mocapd.sim.person.poses import POSES, ArmDirections
 from mocapd.sim.person_spec import PoseKeyframe
 from mocapd.sim.scenario import Scenario
 from mocapd.types import Floats, Pose, Skeleton
-
-if TYPE_CHECKING:  # takes half a second to import, which playing a film does not need
-    from scipy.interpolate import PchipInterpolator
 
 # How a bend or twist of the trunk is shared among its bones.
 _TRUNK_SHARES = {"spine": 0.30, "chest": 0.35, "upperChest": 0.35}
@@ -30,12 +27,14 @@ class Motion:
 
     skeleton: Skeleton
     loop_s: float
-    local_rad: "PchipInterpolator"  # (J*3,) rotation vectors relative to the parent bone
-    root: "PchipInterpolator"  # x, z [m], yaw [rad], crouch [m]
+    local_rad: MonotoneCubic  # (J*3,) rotation vectors relative to the parent bone
+    root: MonotoneCubic  # x, z [m], yaw [rad], crouch [m]
     swings: tuple[tuple[int, Floats, float, float, float], ...]  # joint, vector, Hz, from, to
     sway: Floats  # (3, 4): cycles per loop, phase [rad], amplitude about x and z [rad]
     feet: tuple[FootTrack, FootTrack]  # left, right
-    lifted: "PchipInterpolator | None"  # (2*4,) per foot: how far it is off the floor, 0..1, and where [m]
+    lifted: (
+        MonotoneCubic | None
+    )  # (2*4,) per foot: how far it is off the floor, 0..1, and where [m]
 
 
 def compile_motion(scenario: Scenario, skeleton: Skeleton) -> Motion:
@@ -66,9 +65,7 @@ def compile_motion(scenario: Scenario, skeleton: Skeleton) -> Motion:
     )
 
 
-def _foot_offsets(
-    keys: list[PoseKeyframe], times: Floats, loop_s: float
-) -> "PchipInterpolator | None":
+def _foot_offsets(keys: list[PoseKeyframe], times: Floats, loop_s: float) -> MonotoneCubic | None:
     """Where the keyframes place the feet themselves; None: nowhere."""
     feet = [(key.left_foot_m, key.right_foot_m) for key in keys]
     if not any(place is not None for both in feet for place in both):
@@ -130,13 +127,11 @@ def _window(t: float, start: float, end: float) -> float:
     return float(min(edge, 1.0) ** 2 * (3 - 2 * min(edge, 1.0)))
 
 
-def _periodic(times: Floats, values: Floats, loop_s: float, step: Floats) -> "PchipInterpolator":
+def _periodic(times: Floats, values: Floats, loop_s: float, step: Floats) -> MonotoneCubic:
     """Monotone cubic through the keys, repeated over three loops; `step` is the gain per loop."""
-    from scipy.interpolate import PchipInterpolator
-
     around = np.concatenate([times + k * loop_s for k in range(-2, 4)])
     repeated = np.concatenate([values + k * step for k in range(-2, 4)])
-    return PchipInterpolator(around, repeated, axis=0)
+    return monotone_cubic(around, repeated)
 
 
 def _root_track(keys: list[PoseKeyframe]) -> tuple[Floats, float]:
