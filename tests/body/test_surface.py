@@ -4,8 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy  # its submodules load on first use: they take long to import
 
 from mocapd.assets import asset_path
 from mocapd.body.shape import N_FACTORS, BodyShape, mean_shape, skeleton_of
@@ -41,7 +40,8 @@ def tubes(shape: BodyShape) -> list[tuple[Floats, Ints]]:
     T = surface.triangles
     ends = (T.ravel(), T[:, [1, 2, 0]].ravel())
     n = len(surface.vertices_m)
-    count, piece = connected_components(coo_array((np.ones(T.size), ends), shape=(n, n)))
+    joined = scipy.sparse.coo_array((np.ones(T.size), ends), shape=(n, n))
+    count, piece = scipy.sparse.csgraph.connected_components(joined)
     assert count == 6  # torso, arms, head, legs
     return [(surface.vertices_m, T[piece[T[:, 0]] == i]) for i in range(count)]
 

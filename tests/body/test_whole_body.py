@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy  # its submodules load on first use: they take long to import
 
 from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.derivative_kernels import surface_row
@@ -118,7 +117,8 @@ def pieces(surface: Surface) -> list[Ints]:
     T = surface.triangles
     ends = (T.ravel(), T[:, [1, 2, 0]].ravel())
     n = len(surface.vertices_m)
-    count, piece = connected_components(coo_array((np.ones(T.size), ends), shape=(n, n)))
+    joined = scipy.sparse.coo_array((np.ones(T.size), ends), shape=(n, n))
+    count, piece = scipy.sparse.csgraph.connected_components(joined)
     return [T[piece[T[:, 0]] == i] for i in range(count)]
 
 

@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+import scipy  # its submodules load on first use: they take long to import
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from scipy.spatial.transform import Rotation
 
 from mocapd.geometry import rotations
 from mocapd.types import Floats
@@ -60,7 +60,7 @@ def test_it_acts_on_vectors_as_rotations_do(a: Floats, b: Floats, v: Floats, u: 
 
 @given(ROTVECS, VECTORS)
 def test_all_forms_agree_with_scipy(r: Floats, v: Floats) -> None:
-    expected = Rotation.from_rotvec(r)
+    expected = scipy.spatial.transform.Rotation.from_rotvec(r)
     q = rotations.exp(r)
     assert same(q, expected.as_quat())
     assert q[3] >= 0.0
@@ -91,7 +91,7 @@ def test_small_rotations_keep_their_digits(angle_rad: float) -> None:
 
 @given(AXES, st.floats(-4.0 * np.pi, 4.0 * np.pi))
 def test_more_than_a_turn_is_the_rest_of_it(axis: Floats, angle_rad: float) -> None:
-    expected = Rotation.from_rotvec(_rotvec(axis, angle_rad)).as_quat()
+    expected = scipy.spatial.transform.Rotation.from_rotvec(_rotvec(axis, angle_rad)).as_quat()
     assert same(rotations.exp(_rotvec(axis, angle_rad)), expected)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import least_squares
+import scipy  # its submodules load on first use: they take long to import
 
 from mocapd.geometry import camera_model
 from mocapd.geometry.triangulation import triangulate
@@ -44,7 +44,7 @@ def test_with_noise_it_is_as_good_as_the_least_reprojection_error() -> None:
             p = np.stack([camera_model.to_camera(c, x_m) for c in rig])
             return np.asarray((p[:, :2] / p[:, 2:] - xy[:, k]).ravel())
 
-        return np.asarray(least_squares(error, world_m[k], xtol=1e-14, ftol=1e-14).x)
+        return np.asarray(scipy.optimize.least_squares(error, world_m[k], xtol=1e-14, ftol=1e-14).x)
 
     best_m = np.array([optimum(k) for k in range(30)])
     assert np.abs(points_m - best_m).max() < 2e-4
