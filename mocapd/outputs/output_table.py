@@ -12,7 +12,6 @@ from mocapd.outputs.base import Sink
 from mocapd.outputs.osc import osc_sink
 from mocapd.outputs.prediction.predicted_sink import PredictedSink
 from mocapd.outputs.prediction.prediction_params import PredictionParams
-from mocapd.outputs.threaded import ThreadedSink
 from mocapd.outputs.vmc import vmc_params
 from mocapd.outputs.vmt import vmt_sink
 from mocapd.outputs.vrchat import vrchat_sink
@@ -99,7 +98,6 @@ def _safe(_section: Any) -> tuple[str, ...]:
 class OutputEntry:
     """`section`: its settings; `build`: makes the sink from its section and the daemon's name, importing it then.
 
-    `blocks`: True if `send` or `send_state` may take longer than two milliseconds: the sink then gets its own thread.
     `unsafe`: one warning for each permitted but unsafe setting. `override_address`: the section with another host
     (numeric) and port, None: unchanged. `limit_hz`: the output's own highest rate [Hz]. `uses_facing`: True if it
     uses the forward direction of `mocapd recenter`.
@@ -107,7 +105,6 @@ class OutputEntry:
 
     section: Callable[[], OutputSection]
     build: Callable[[Any, str], Sink]
-    blocks: bool
     unsafe: Callable[[Any], tuple[str, ...]] = _safe
     override_address: Callable[[Any, str | None, int | None], Any] = override_destination
     limit_hz: Callable[[Any], float] = _no_limit
@@ -153,27 +150,25 @@ OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
         "zenoh": OutputEntry(
             ZenohSection,
             _zenoh,
-            blocks=False,
             unsafe=warnings,
             override_address=_override_zenoh,
             uses_facing=True,
         ),
         # Non-blocking sockets and numeric addresses: a full buffer is an error that is counted. Measured: median
         # 0.07 ms, also without a reader.
-        "osc": OutputEntry(OscSection, _osc, blocks=False),
+        "osc": OutputEntry(OscSection, _osc),
         # The same sockets.
-        "vmc": OutputEntry(VmcSection, _vmc, blocks=False, limit_hz=_own_rate),
+        "vmc": OutputEntry(VmcSection, _vmc, limit_hz=_own_rate),
         # The same, with fewer bytes; the search for VRChat has a thread of its own.
         "vrchat": OutputEntry(
             VRChatSection,
             _vrchat,
-            blocks=False,
             unsafe=vrchat_sink.warnings,
             limit_hz=_own_rate,
             uses_facing=True,
         ),
         # The same socket, one bundle of a constant size.
-        "vmt": OutputEntry(VmtSection, _vmt, blocks=False, uses_facing=True),
+        "vmt": OutputEntry(VmtSection, _vmt, uses_facing=True),
     }
 )
 
@@ -208,9 +203,8 @@ def build_sinks(
             sink = entry.build(section, instance)
             rate_hz = prediction.rate_hz(name, entry.limit_hz(section))
             if rate_hz > 0.0:
-                sinks.append(PredictedSink(sink, rate_hz, prediction.ahead_ms / 1e3))
-            else:
-                sinks.append(ThreadedSink(sink) if entry.blocks else sink)
+                sink = PredictedSink(sink, rate_hz, prediction.ahead_ms / 1e3)
+            sinks.append(sink)
     return tuple(sinks)
 
 

@@ -39,7 +39,7 @@ OPENING = replace(LIVE, state=CaptureState.OPENING)
 @pytest.fixture
 def service(monkeypatch: pytest.MonkeyPatch) -> Iterator[Service]:
     sink = Recorder()
-    entry = OutputEntry(Enabled, lambda _section, _name: sink, blocks=False)
+    entry = OutputEntry(Enabled, lambda _section, _name: sink)
     monkeypatch.setattr(output_table, "OUTPUTS", {"recorder": entry})
     made = datetime(2026, 11, 1, 12, 0)
     session = replace(session_of("a", "b", rig=Rig(ring(2))), calibrated=made)

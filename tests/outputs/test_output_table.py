@@ -1,4 +1,4 @@
-"""Outputs from their sections: those that are enabled, and on a thread of their own where they may block."""
+"""Outputs from their sections: those that are enabled."""
 
 from dataclasses import dataclass
 
@@ -14,13 +14,12 @@ from mocapd.outputs.output_table import (
     default_sections,
     unsafe_outputs,
 )
-from mocapd.outputs.threaded import ThreadedSink
-from tests.outputs.test_threaded import SlowSink
+from tests.service.test_publisher import Recorder
 
 
 @dataclass(frozen=True)
-class SlowSection:
-    """level: how slow"""
+class NewSection:
+    """level: of something"""
 
     level: int = 3
     enabled: bool = False
@@ -40,16 +39,15 @@ def test_all_are_built_unless_they_are_disabled_or_left_out() -> None:
 def test_a_line_in_the_table_is_all_that_a_new_output_needs(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    slow = OutputEntry(SlowSection, lambda _section, _name: SlowSink(), blocks=True)
-    monkeypatch.setattr(output_table, "OUTPUTS", {**OUTPUTS, "slow": slow})
-    assert "slow" not in [sink.name for sink in build_sinks(default_sections(), "pc")]
-    flags = {"slow.enabled": "true", "slow.level": "7"}
+    new = OutputEntry(NewSection, lambda _section, _name: Recorder())
+    monkeypatch.setattr(output_table, "OUTPUTS", {**OUTPUTS, "new": new})
+    assert "new" not in [sink.name for sink in build_sinks(default_sections(), "pc")]
+    flags = {"new.enabled": "true", "new.level": "7"}
     effective = load_config(flags, env={"MOCAPD_OSC_ENABLED": "false"}, candidates=())
-    assert effective.config.outputs["slow"] == SlowSection(7, True)
-    assert {"slow.level", "slow.enabled"} <= {one.key.path for one in effective.settings}
+    assert effective.config.outputs["new"] == NewSection(7, True)
+    assert {"new.level", "new.enabled"} <= {one.key.path for one in effective.settings}
     sinks = build_sinks(effective.config.outputs, "pc")
-    assert [sink.name for sink in sinks] == ["zenoh", "slow"]
-    assert [type(sink) is ThreadedSink for sink in sinks] == [False, True]
+    assert [sink.name for sink in sinks] == ["zenoh", Recorder.name]
 
 
 def test_what_is_unsafe_is_told_of_those_that_are_enabled() -> None:

@@ -35,7 +35,7 @@ class Enabled:
 def sink(monkeypatch: pytest.MonkeyPatch) -> Recorder:
     """The only output of `config_of`."""
     recorder = Recorder()
-    entry = OutputEntry(Enabled, lambda _section, _name: recorder, blocks=False)
+    entry = OutputEntry(Enabled, lambda _section, _name: recorder)
     monkeypatch.setattr(output_table, "OUTPUTS", {"recorder": entry})
     return recorder
 

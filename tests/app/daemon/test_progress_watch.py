@@ -88,7 +88,7 @@ class Setting:
 @contextmanager
 def daemon(monkeypatch: pytest.MonkeyPatch) -> Iterator[Setting]:
     sink = HeldSink()
-    entry = OutputEntry(Enabled, lambda _section, _name: sink, blocks=False)
+    entry = OutputEntry(Enabled, lambda _section, _name: sink)
     monkeypatch.setattr(output_table, "OUTPUTS", {"recorder": entry})
     config = Config(outputs={"recorder": Enabled()}, state_dir=Path("/nonexistent"))
     cameras, tracker = (FakeCamera("a"), FakeCamera("b")), HeldTracker()

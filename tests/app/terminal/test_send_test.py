@@ -201,9 +201,7 @@ def test_an_output_that_is_new_in_the_table_can_be_tried(
         seen.append(section)
         return NewSink()
 
-    monkeypatch.setattr(
-        output_table, "OUTPUTS", {**OUTPUTS, "new": OutputEntry(Section, build, blocks=False)}
-    )
+    monkeypatch.setattr(output_table, "OUTPUTS", {**OUTPUTS, "new": OutputEntry(Section, build)})
     assert code_of(output="new", port=39600) == 0
     assert seen == [Section(("127.0.0.1:39600",))]
     assert "sending to it (whether anybody listens there is not told)" in capsys.readouterr().out

@@ -32,7 +32,7 @@ class KeepingSink:
         self.got: list[SkeletonFrame] = []
         self.told: list[StateMessage] = []
         self.closed = 0
-        self.error: UnavailableError | None = None
+        self.error: Exception | None = None
 
     def open(self) -> None: ...
 
@@ -139,6 +139,17 @@ def test_what_ends_the_output_ends_the_next_send() -> None:
 
     with opened(kept) as sink:
         assert eventually(is_told)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_defect_of_the_output_ends_the_next_send_too() -> None:
+    kept = KeepingSink()
+    kept.error = ZeroDivisionError()
+    with opened(kept) as sink:
+        sink.send(as_now(0.0))
+        assert eventually(lambda: not sink._thread._thread.is_alive())  # type: ignore[union-attr]
+        with pytest.raises(RuntimeError, match="output kept died"):
+            sink.send(as_now(0.0))
 
 
 def test_any_output_may_be_predicted() -> None:
