@@ -16,12 +16,6 @@ class LimbScoreParams:
     colour_cap: float = 60.0
     # by how much of its brightness a colour may be off, as limbs are round; 0: [Hecht 2009]
     shading: float = 0.5
-    # edges count by how well they run along the limb's; off: [Hecht 2009]
-    oriented: bool = True
-    # a part that points at the camera says as little as it shows; off: [Hecht 2009]
-    by_size: bool = True
-    # of a folded limb the nearer part hides the farther; off: [Hecht 2009]
-    folds: bool = True
     # Penalty of a hidden sample, in addition to the limb's median penalty of visible samples. The median differs from
     # limb to limb (over true poses in six captures: edges of arms 0.16, of legs 0.23; surfaces 0.49 and 0.14), so
     # no fixed value suits all. At 0.07 to 0.10 above the median as many true poses are above as poses 20 cm off are
@@ -30,22 +24,13 @@ class LimbScoreParams:
     # instead of 32), with 0.25 and more hidden limbs moved into view.
     usual: tuple[float, float] = (0.33, 0.27)  # of edges and surface, before a limb has its own
     hidden_surplus: float = 0.15
-    # time constant at which a limb's own are learned; 0: never, as [Hecht 2009]
+    # time constant at which a limb's own are learned
     usual_s: float = 2.0
     # by how much a part must be nearer to hide: joints of limb and trunk are as far
     hidden_by_m: float = 0.05
     cell_px: float = 8.0  # of the grid in which parts that hide are looked up
     occlusion: bool = True  # off: as if no part hid another
     appearance: bool = True  # off: edges alone
-
-
-def as_published() -> LimbScoreParams:
-    """The scores of [Hecht et al. 2009]; what is hidden is charged fixed values, between those of true poses and of poses
-    20 cm off in six captures: 0.10 of edges (arms 0.05, legs 0.16) and 0.08 of surfaces (arms 0.12, legs 0.04)."""
-    return LimbScoreParams(
-        surface_weight=40.0, colour_cap=765.0, shading=0.0, oriented=False, by_size=False, folds=False,
-        usual=(0.10, 0.08), hidden_surplus=0.0, usual_s=0.0,
-    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,9 +75,7 @@ def limb_penalties(
         params.colour_cap,
         params.shading,
         params.hidden_by_m,
-        params.oriented,
-        params.by_size,
-        params.folds and params.occlusion,
+        params.occlusion,
     )
     others = ~((1 << parts[0]) | (1 << parts[1])) if params.occlusion else 0
     out = Penalties(
@@ -113,7 +111,7 @@ def learn_usual(
     params: LimbScoreParams,
 ) -> UsualPenalties:
     """Running mean with the penalties of particles of these weights (N,), dt_s after the last ones; a plain mean at first.
-    Unchanged if a view shows less than half of the limb, and with a time constant of 0."""
+    Unchanged if a view shows less than half of the limb."""
     mean, averaged_s = usual.mean.copy(), usual.averaged_s.copy()
     for v, view in enumerate(views):
         share = weights @ penalties.visible[v]

@@ -20,16 +20,14 @@ Singles = NDArray[np.float32]
 
 
 class Sampling(NamedTuple):
-    """See LimbScoreParams, whose fields these are."""
+    """See LimbScoreParams, whose fields these are. occlusion: the nearer part of a folded limb hides the farther."""
 
     along: int
     across: int
     colour_cap: float
     shading: float
     hidden_by_m: float
-    oriented: bool
-    by_size: bool
-    folds: bool
+    occlusion: bool
 
 
 @kernel(inline="always")
@@ -80,7 +78,7 @@ def score_in_view(
     bits of the parts that may hide the limb. A sample of a part that points at the camera counts by the sine of the
     angle, as its samples lie close together.
     """
-    along, across, colour_cap, shading, hidden_by_m, oriented, by_size, folds = sampling
+    along, across, colour_cap, shading, hidden_by_m, folds = sampling
     least_gain, most_gain = np.float32(1.0 - shading), np.float32(1.0 + shading)
     h, w, _ = edges.shape
     p = np.empty((3, 3))
@@ -105,7 +103,7 @@ def score_in_view(
             if not before[f]:
                 continue
             quad = quads[f]
-            size = across_view(p[f], p[f + 1]) if by_size else 1.0
+            size = across_view(p[f], p[f + 1])
             for e in range(2):
                 m, q = 3 * e, 1 + e
                 dx, dy = quad[q, 0] - quad[m, 0], quad[q, 1] - quad[m, 1]
@@ -137,11 +135,9 @@ def score_in_view(
                         continue
                     if on_edge:
                         at = edges[int(y + 0.5), int(x + 0.5)]
-                        if oriented:
-                            e = 0 if k < 0 else 1
-                            found = 0.5 * (at[0] + cosine[e] * at[1] + sine[e] * at[2])
-                        else:
-                            found = float(at[0])
+                        # edges count by how well they run along the limb's
+                        e = 0 if k < 0 else 1
+                        found = 0.5 * (at[0] + cosine[e] * at[1] + sine[e] * at[2])
                         off = 1.0 - min(found * (1.0 / FULL), 1.0)
                         edge += size * off * off
                         n_edge += size

@@ -103,7 +103,7 @@ def naive_penalties(
     def visible(f: int, xy: Floats, depth: float) -> bool:
         if not (-0.5 <= xy[0] < w - 0.5 and -0.5 <= xy[1] < h - 0.5):
             return False
-        if params.folds and f != nearer and inside(quads[nearer], xy):
+        if f != nearer and inside(quads[nearer], xy):
             return False
         return not naive_hidden(*body, set(parts), xy, depth, params.hidden_by_m)
 
@@ -112,7 +112,7 @@ def naive_penalties(
         quad, middle = quads[f], 0.5 * to_camera(of, a + b) + 0.5 * of.t_m
         axis = of.R @ (b - a)
         across = np.cross(axis, middle) / np.linalg.norm(axis) / np.linalg.norm(middle)
-        size = float(np.linalg.norm(across)) if params.by_size else 1.0
+        size = float(np.linalg.norm(across))
         for j in range(params.along):
             s = (j + 0.5) / params.along
             sides = (1 - s) * quad[0] + s * quad[1], (1 - s) * quad[3] + s * quad[2]
@@ -123,7 +123,7 @@ def naive_penalties(
                     strength, cosine, sine = view.edges[y, x] / FULL
                     normal = 2.0 * np.arctan2(edge[0], -edge[1])
                     found = 0.5 * (strength + cosine * np.cos(normal) + sine * np.sin(normal))
-                    total[0] += size * (1.0 - min(found if params.oriented else strength, 1.0)) ** 2
+                    total[0] += size * (1.0 - min(found, 1.0)) ** 2
                     seen[0] += size
             for k in range(params.across):
                 xy = sides[0] + (k + 0.5) / params.across * (sides[1] - sides[0])

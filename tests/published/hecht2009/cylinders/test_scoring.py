@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.published.hecht2009.cylinders.limb_params import LimbScoreParams, as_published
+from mocapd.published.hecht2009.cylinders.limb_params import LimbScoreParams
 from mocapd.published.hecht2009.cylinders.limb_score import (
     EDGE,
     SURFACE,
@@ -59,7 +59,9 @@ def particles(n: int, sd_m: float, seed: int = 1) -> Floats:
     return out
 
 
-@pytest.mark.parametrize("params", [PARAMS, as_published(), replace(PARAMS, along=5, across=3)])
+@pytest.mark.parametrize(
+    "params", [PARAMS, replace(PARAMS, shading=0.0), replace(PARAMS, along=5, across=3)]
+)
 def test_penalties_are_those_of_the_naive_twin(params: LimbScoreParams) -> None:
     of = camera(0.9)
     view, body = view_of(of)
@@ -78,8 +80,8 @@ def test_a_perfect_picture_costs_nothing_and_its_opposite_most() -> None:
     view, _ = view_of(camera())
     limb = limb_of(ENDS_M, LEFT_ARM)[None]
     full = np.zeros_like(view.edges)
-    full[..., 0] = FULL
-    params = replace(PARAMS, oriented=False, occlusion=False)
+    full[..., 0] = 2 * FULL  # whichever way it runs
+    params = replace(PARAMS, occlusion=False)
     for grey, edges, expected in ((100, full, 0.0), (255, np.zeros_like(full), 1.0)):
         reference = np.full_like(view.reference, 100.0)
         seen = replace(
@@ -152,10 +154,12 @@ def test_switches_leave_out_what_they_name() -> None:
     assert (scores(edges_alone) == scores(edges_alone, other_colours)).all()
     assert (scores(PARAMS) != scores(PARAMS, other_colours)).any()
     nobody = allocate_occlusion(len(ENDS_M), WORK_PX, PARAMS.cell_px)
-    see_through = replace(PARAMS, occlusion=False, folds=False)
-    alone = scores(replace(PARAMS, folds=False), replace(view, occlusion=nobody))
-    assert (scores(see_through) == alone).all()
-    assert (scores(PARAMS) != alone).any()
+    see_through, unhidden = replace(PARAMS, occlusion=False), replace(view, occlusion=nobody)
+    assert (scores(PARAMS) != scores(PARAMS, unhidden)).any()
+    assert (scores(see_through) == scores(see_through, unhidden)).all()
+    assert (scores(see_through) != scores(PARAMS, unhidden)).any()  # of those that fold
+    points[:, 2] = 2.0 * points[:, 1] - points[:, 0]  # straight
+    assert (scores(see_through) == scores(PARAMS, unhidden)).all()
 
 
 def test_what_is_usual_is_the_mean_at_first_and_waits_while_the_limb_is_hidden() -> None:

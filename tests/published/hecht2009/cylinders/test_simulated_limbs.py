@@ -13,7 +13,6 @@ from mocapd.geometry import rotations
 from mocapd.published.hecht2009.cylinders.limb_params import (
     LimbMotionParams,
     LimbScoreParams,
-    as_published,
 )
 from mocapd.published.hecht2009.cylinders.limb_particles import start_cloud, step_cloud
 from mocapd.published.hecht2009.cylinders.limb_score import LimbView, UsualPenalties
@@ -139,7 +138,6 @@ def beside(arm_m: Floats, by_m: float, rng: np.random.Generator) -> Floats:
     [
         (SCORE, 0.05, 0.95), (SCORE, 0.1, 0.95), (SCORE, 0.2, 0.95),
         (EDGES_ALONE, 0.1, 0.8), (EDGES_ALONE, 0.2, 0.9),
-        (as_published(), 0.1, 0.8), (as_published(), 0.2, 0.9),
     ],
 )  # fmt: skip
 def test_the_true_pose_scores_higher_than_poses_beside_it(
