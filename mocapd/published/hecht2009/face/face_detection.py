@@ -20,12 +20,11 @@ _ALIKE = 1.5
 
 @dataclass(frozen=True, slots=True)
 class FaceBox:
-    """A square around a face from brow to chin: its middle and side [px], and how many windows agree on it."""
+    """A square around a face from brow to chin: its middle and side [px]."""
 
     x_px: float
     y_px: float
     size_px: float
-    windows: int
 
 
 def face_sizes(least_px: float, largest_px: float) -> tuple[float, ...]:
@@ -78,7 +77,7 @@ def group_windows(windows: Floats, least_windows: int) -> tuple[FaceBox, ...]:
         x, y, size = left[of].mean(axis=0).tolist()
         if np.count_nonzero(of) < least_windows:
             break
-        boxes.append(FaceBox(x, y, size, int(np.count_nonzero(of))))
+        boxes.append(FaceBox(x, y, size))
         left = left[~of]
     return tuple(boxes)
 

@@ -146,6 +146,6 @@ def _fit_outlines(view: HeadView, crown: Floats, stature_m: float) -> list[FaceB
     places = np.flatnonzero(peaks)
     sides = FACE_WIDTH * stature_m * float(view.camera.K[0, 0]) / depths_m
     return [
-        FaceBox(float(pixels[i, 0]), float(pixels[i, 1]), float(sides[i]), 0)
+        FaceBox(float(pixels[i, 0]), float(pixels[i, 1]), float(sides[i]))
         for i in places[np.argsort(-score[places])][:_TOPS]
     ]

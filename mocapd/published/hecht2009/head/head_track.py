@@ -17,14 +17,6 @@ class HeadState(StrEnum):
     TRACKED = "tracked"
 
 
-class StereoFault(StrEnum):
-    """Why the cameras give no depth; then it comes from the head's apparent size."""
-
-    NONE = ""
-    NO_BASELINE = "the cameras are in one place"
-    SWAPPED = "the face lies behind the cameras: left and right are swapped"
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class HeadPicture:
     """One camera's picture (h,w,3) uint8 BGR, exposed offset_s after the requested instant; None: it has none.
@@ -41,16 +33,14 @@ class HeadPicture:
 class HeadTrack:
     """A head in one instant, world frame [m].
 
-    middle_m (3,): the head's middle; None where lost. sigma_along_m, sigma_across_m: one standard deviation along the
-    ray of the nearest camera and across it. yaw_rad: the face's direction, 0 along +Z, positive to the person's left;
-    None: unknown. boxes: this head's face detections in this instant. support: score of colours and outline, about 0..2.
+    middle_m (3,): the head's middle; None where lost. sigma_along_m: one standard deviation along the ray of the nearest
+    camera. yaw_rad: the face's direction, 0 along +Z, positive to the person's left; None: unknown. boxes: this
+    head's face detections in this instant. support: score of colours and outline, about 0..2.
     """
 
     state: HeadState
     middle_m: Floats | None = None
     sigma_along_m: float = float(np.inf)
-    sigma_across_m: float = float(np.inf)
     yaw_rad: float | None = None
     boxes: tuple[FaceBox | None, ...] = ()
     support: float = 0.0
-    fault: StereoFault = StereoFault.NONE

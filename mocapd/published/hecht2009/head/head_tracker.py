@@ -30,18 +30,12 @@ from mocapd.published.hecht2009.head.head_cloud import (
 from mocapd.published.hecht2009.head.head_evidence import HeadEvidence, HeadGuess
 from mocapd.published.hecht2009.head.head_outline import outlined_head
 from mocapd.published.hecht2009.head.head_params import (
-    FACE_SD,
     FARTHEST_M,
     LEARN_SUPPORT,
     NEAREST_M,
 )
 from mocapd.published.hecht2009.head.head_particle_kernels import score_observations
-from mocapd.published.hecht2009.head.head_track import (
-    HeadPicture,
-    HeadState,
-    HeadTrack,
-    StereoFault,
-)
+from mocapd.published.hecht2009.head.head_track import HeadPicture, HeadState, HeadTrack
 from mocapd.published.hecht2009.head.head_views import HeadView, have_baseline, head_views
 from mocapd.published.hecht2009.resampling import normalised_weights
 from mocapd.types import Camera, Floats
@@ -77,7 +71,7 @@ class HeadTracker:
         self._search = FaceSearch(cascade, stature_m)
         self._evidence = HeadEvidence(len(self._cameras), cascade, stature_m)
         apart = [have_baseline(a, b) for i, a in enumerate(cameras) for b in cameras[:i]]
-        self._fault = StereoFault.NONE if all(apart) else StereoFault.NO_BASELINE
+        self._by_size = len(self._cameras) == 1 or not all(apart)
         self.reset()
 
     def reset(self, near_m: Floats | None = None) -> None:
@@ -122,7 +116,7 @@ class HeadTracker:
     def _found(self, views: Sequence[HeadView]) -> HeadTrack:
         """The best detected face; starts to track it if it is live and of a head's size."""
         if self._search.are_swapped:
-            return HeadTrack(HeadState.LOST, fault=StereoFault.SWAPPED)
+            return HeadTrack(HeadState.LOST)
         heads = [(c, c.placed) for c in self._search.candidates if c.placed and self._is_head(c, c.placed)]  # fmt: skip
         if not heads:
             return self._find_by_outline(views)
@@ -135,7 +129,7 @@ class HeadTracker:
     def _find_by_outline(self, views: Sequence[HeadView]) -> HeadTrack:
         """A head without a detected face: a head outline before the background in several successive looks."""
         outlined = outlined_head(views, self._stature_m)
-        lost = HeadTrack(HeadState.LOST, fault=self._fault)
+        lost = HeadTrack(HeadState.LOST)
         if outlined is None:
             self._outlines_m = []
             return lost
@@ -154,8 +148,7 @@ class HeadTracker:
     def _is_head(self, of: FaceCandidate, placed: PlacedFace) -> bool:
         """True for a face that was detected more than once, has a head's size, and a distance on which a pair agrees. One
         camera, or two in one place, use the size only."""
-        alone = len(self._cameras) == 1 or self._fault is StereoFault.NO_BASELINE
-        is_placed = alone or placed.depth is not Depth.SIZE
+        is_placed = self._by_size or placed.depth is not Depth.SIZE
         often = of.looks >= _LEAST_LOOKS
         return often and is_placed and placed.is_head_sized
 
@@ -165,16 +158,12 @@ class HeadTracker:
     def _away_m(self, of: FaceCandidate, placed: PlacedFace) -> float:
         return float(np.linalg.norm(placed.middle_m - centre(self._cameras[of.view])))
 
-    def _across_m(self, share: float, of: FaceCandidate, placed: PlacedFace) -> float:
-        """A share of the face's side, at its distance."""
-        focal_px = float(self._cameras[of.view].K[0, 0])
-        return share * of.box.size_px * self._away_m(of, placed) / focal_px
-
     def _start(self, of: FaceCandidate, placed: PlacedFace, views: Sequence[HeadView]) -> None:
         ray = placed.middle_m - centre(self._cameras[of.view])
         ray = ray / np.linalg.norm(ray)
         along = np.outer(ray, ray)
-        across_m = self._across_m(_START_ACROSS, of, placed)
+        focal_px = float(self._cameras[of.view].K[0, 0])
+        across_m = _START_ACROSS * of.box.size_px * self._away_m(of, placed) / focal_px
         covariance = placed.sigma_along_m**2 * along + across_m**2 * (np.eye(3) - along)
         self._cloud = cloud_at(placed.middle_m, covariance, self._rng)
         self._faceless_s = self._unsupported_s = 0.0
@@ -186,10 +175,7 @@ class HeadTracker:
     def _track_of_face(self, state: HeadState, of: FaceCandidate, placed: PlacedFace) -> HeadTrack:
         yaw = self._towards_rad(placed.middle_m, of.view)
         boxes = tuple(placed.boxes.get(i) for i in range(len(self._cameras)))
-        across_m = self._across_m(FACE_SD, of, placed)
-        return HeadTrack(
-            state, placed.middle_m, placed.sigma_along_m, across_m, yaw, boxes, 0.0, self._fault
-        )
+        return HeadTrack(state, placed.middle_m, placed.sigma_along_m, yaw, boxes)
 
     def _towards_rad(self, middle_m: Floats, camera: int) -> float:
         """The yaw of a head that looks at a camera."""
@@ -230,7 +216,8 @@ class HeadTracker:
         self._evidence.learn(views, middle, velocity, sighting.boxes, dt_s)
         facing = self._faceless_s <= _FACING_S
         self._yaw_rad = self._evidence.yaw_rad(views, middle, velocity) if facing else None
-        return self._track(middle, covariance, sighting.boxes, support)
+        along_m = self._sigma_along_m(middle, covariance)
+        return HeadTrack(HeadState.TRACKED, middle, along_m, self._yaw_rad, sighting.boxes, support)
 
     def _check_place(
         self, views: Sequence[HeadView], boxes: Sequence[FaceBox | None], dt_s: float
@@ -251,35 +238,17 @@ class HeadTracker:
                 covariance = placed.sigma_along_m**2 * np.eye(3)
                 self._cloud = cloud_at(placed.middle_m, covariance, self._rng)
 
-    def _track(
-        self,
-        middle: Floats,
-        covariance: Floats,
-        boxes: tuple[FaceBox | None, ...],
-        support: float,
-    ) -> HeadTrack:
-        along, across = self._spread(middle, covariance)
-        return HeadTrack(
-            HeadState.TRACKED, middle, along, across, self._yaw_rad, boxes, support, self._fault
-        )
-
-    def _nearest(self, middle: Floats) -> int:
-        """The nearest camera."""
-        return int(np.argmin([np.linalg.norm(centre(c) - middle) for c in self._cameras]))
-
-    def _spread(self, middle: Floats, covariance: Floats) -> tuple[float, float]:
-        """Standard deviations along the nearest camera's ray and across it [m]."""
-        ray = middle - centre(self._cameras[self._nearest(middle)])
+    def _sigma_along_m(self, middle: Floats, covariance: Floats) -> float:
+        """One standard deviation along the nearest camera's ray [m]."""
+        rays = [middle - centre(camera) for camera in self._cameras]
+        ray = min(rays, key=np.linalg.norm)
         ray = ray / np.linalg.norm(ray)
-        along = float(ray @ covariance @ ray)
-        across = 0.5 * (float(np.trace(covariance)) - along)
-        return float(np.sqrt(along)), float(np.sqrt(max(across, 0.0)))
+        return float(np.sqrt(ray @ covariance @ ray))
 
     def _guess(self, cloud: Cloud) -> HeadGuess:
         middle, covariance = moments(cloud.place_m)
-        return HeadGuess(
-            middle, cloud.velocity_m_s.mean(axis=0), self._spread(middle, covariance)[0]
-        )
+        along_m = self._sigma_along_m(middle, covariance)
+        return HeadGuess(middle, cloud.velocity_m_s.mean(axis=0), along_m)
 
     def _in_reach(self, middle: Floats) -> bool:
         """True if the place is in view of a camera, not too near and not too far."""

@@ -107,9 +107,8 @@ def test_windows_of_two_faces_stay_two_groups() -> None:
     other = [[60.0, 10.0, 24.0], [61.0, 10.0, 24.0]]
     windows = np.array(one + other)
     first, second = group_windows(windows, 2)
-    assert (first.windows, second.windows) == (3, 2)
-    middle = (first.x_px, first.y_px, first.size_px)
-    assert middle == pytest.approx(tuple(np.mean(one, axis=0)))
+    for box, of in ((first, one), (second, other)):
+        assert (box.x_px, box.y_px, box.size_px) == pytest.approx(tuple(np.mean(of, axis=0)))
     assert group_windows(windows, 3) == (first,)
 
 

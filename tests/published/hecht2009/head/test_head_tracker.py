@@ -14,7 +14,6 @@ from mocapd.published.hecht2009.head.head_track import (
     HeadPicture,
     HeadState,
     HeadTrack,
-    StereoFault,
 )
 from mocapd.published.hecht2009.head.head_tracker import HeadTracker
 from mocapd.types import Bytes, Camera, Floats
@@ -107,8 +106,7 @@ def test_a_person_who_walks_about_is_found_and_followed(
     errors = errors_m(tracks)
     assert np.median(errors) < 0.04
     assert np.sqrt((errors[15:] ** 2).mean()) < 0.06
-    last = tracks[-1]
-    assert 0.0 < last.sigma_across_m < last.sigma_along_m + 0.01 < 0.1
+    assert 0.0 < tracks[-1].sigma_along_m < 0.09
 
 
 def test_cameras_that_are_exposed_one_after_the_other_agree_all_the_same(
@@ -127,7 +125,9 @@ def test_one_camera_goes_by_the_size_of_the_head_and_says_that_it_is_unsure(
     followed = [track for track in tracks[-30:] if track.state is HeadState.TRACKED]
     assert len(followed) == 30
     assert np.median(errors_m(tracks)) < 0.5
-    assert all(track.sigma_along_m > 2.0 * track.sigma_across_m for track in followed)
+    pair = run(HeadTracker(narrow_pair(), STATURE_M, toy), narrow_pair(), person, 2.5)
+    unsure, sure = (np.median([t.sigma_along_m for t in of[-30:]]) for of in (followed, pair))
+    assert unsure > 2.0 * sure
 
 
 def test_a_head_that_turns_away_is_followed_and_its_face_is_not_made_up(
@@ -197,14 +197,13 @@ def test_cameras_that_have_changed_places_are_refused(toy: CascadeArrays) -> Non
     tracker = HeadTracker((left, right), STATURE_M, toy)
     tracks = run(tracker, (right, left), person, 2.0)
     assert HeadState.TRACKED not in {track.state for track in tracks}
-    assert tracks[-1].fault is StereoFault.SWAPPED
+    assert tracks[-1].state is HeadState.LOST
 
 
-def test_two_cameras_in_one_place_say_so_and_go_by_the_size(toy: CascadeArrays) -> None:
+def test_two_cameras_in_one_place_go_by_the_size(toy: CascadeArrays) -> None:
     one = camera(0.0, "one")
     cameras = (one, replace(one, name="two"))
     tracks = run(HeadTracker(cameras, STATURE_M, toy), cameras, person, 2.0)
-    assert tracks[-1].fault is StereoFault.NO_BASELINE
     assert tracks[-1].state is HeadState.TRACKED
     assert np.median(errors_m(tracks)) < 0.5
 
