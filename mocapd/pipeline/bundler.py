@@ -130,10 +130,6 @@ class Bundler:
             for name, camera in self._cameras.items()
         }
 
-    def delays_ns(self) -> dict[str, int]:
-        """Each camera's median time from capture to arrival [ns]; 0 before its first frame."""
-        return {name: camera.delay_ns for name, camera in self._cameras.items()}
-
     def _advance(self, now_ns: int) -> int:
         self._now_ns = now_ns if self._now_ns is None else max(self._now_ns, now_ns)
         return self._now_ns

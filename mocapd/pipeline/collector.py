@@ -14,15 +14,13 @@ from mocapd.types import Frame, FrameSet
 class CollectorCounts:
     """`sets`: frame sets made; `dropped`: those displaced by a newer one before they were fetched.
 
-    Per camera: frame counts, frames arriving per second [Hz], and the median of arrival minus
-    capture [ms].
+    Per camera: frame counts, and frames arriving per second [Hz].
     """
 
     sets: int
     dropped: int
     cameras: dict[str, CameraCounts]
     rates_hz: dict[str, float]
-    delays_ms: dict[str, float]
 
 
 class FrameCollector:
@@ -109,7 +107,6 @@ class FrameCollector:
                 self._dropped,
                 self._bundler.counts(),
                 {name: rate.rate_hz(now_ns) for name, rate in self._rates.items()},
-                {name: ns / 1e6 for name, ns in self._bundler.delays_ns().items()},
             )
 
     def _keep(self, sets: tuple[FrameSet, ...]) -> None:

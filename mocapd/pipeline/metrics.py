@@ -16,10 +16,9 @@ from mocapd.types import BodyState, FrameSet, Tracking
 
 @dataclass(frozen=True, slots=True)
 class CameraMetrics:
-    """rate_hz: frames that arrive [Hz]; delay_ms: arrival minus capture (median) [ms]."""
+    """rate_hz: frames that arrive [Hz]."""
 
     rate_hz: float
-    delay_ms: float
     counts: CameraCounts
 
 
@@ -137,7 +136,7 @@ class MetricsRecorder:
             tracking=tracking,
             tracker=tracker,
             cameras={
-                name: CameraMetrics(collected.rates_hz[name], collected.delays_ms[name], counts)
+                name: CameraMetrics(collected.rates_hz[name], counts)
                 for name, counts in collected.cameras.items()
             },
             latency_counts=latencies,

@@ -39,7 +39,7 @@ def config_of(address: str, folder: Path) -> Config:
 def test_its_status_and_its_records_show_it_masked(tmp_path: Path) -> None:
     (camera,) = open_session(config_of(ADDRESS, tmp_path), lambda *_: None).cameras
     status = CaptureStatus("net", CaptureState.LOST, "", 0, 0, 0, 0.0, None)
-    metrics = CameraMetrics(0.0, 0.0, CameraCounts(0, 0, 0, 0))
+    metrics = CameraMetrics(0.0, CameraCounts(0, 0, 0, 0))
     assert camera_message("home", camera, status, metrics, Mounting.UNKNOWN).source == SHOWN
     assert "hunter2" not in repr(camera)
     assert camera.address == ADDRESS

@@ -104,7 +104,7 @@ def sequences(place: Place) -> Attempt:
             raise WrongError(f"{counts.lost} pictures are lost in {gone_s:.1f} s")
         torn = random.choice((0, 2**53, 2**64, 10**30))
         status = CaptureStatus("a", CaptureState.LIVE, "", taken, torn, 0, 30.0, now_ns)
-        message = camera_message("pc", camera, status, CameraMetrics(30.0, 1.0, counts), _STEADY)
+        message = camera_message("pc", camera, status, CameraMetrics(30.0, counts), _STEADY)
         for message_format in ("json", "msgpack"):
             ZenohState("pc", message_format).set(message)
         return taken > 0

@@ -32,7 +32,6 @@ def test_the_newest_pair_is_handed_out_whole_and_the_displaced_counted() -> None
     counts = collector.counts()
     assert (counts.sets, counts.dropped) == (4, 3)
     assert counts.rates_hz["a"] == pytest.approx(30.0, abs=0.1)
-    assert counts.delays_ms == {"a": 20.0, "b": 20.0}
 
 
 def test_a_missing_frame_is_waited_for_until_the_deadline() -> None:

@@ -204,7 +204,6 @@ def test_each_pair_gives_a_body_in_order_and_metrics_tell_of_it() -> None:
     assert metrics.tracker == "canned"
     assert metrics.tracking is Tracking.LIVE
     assert metrics.cameras["a"].counts.received == 12
-    assert metrics.cameras["b"].delay_ms >= 5.0
     assert not run.deaths
 
 

@@ -96,7 +96,7 @@ def test_without_frames_nobody_is_too_slow() -> None:
     recorder = MetricsRecorder()
     recorder.set_slowness(SLOW_NOW)
     recorder.absent(lost_body(0, "shirt"))
-    assert recorder.snapshot(CollectorCounts(0, 0, {}, {}, {}), 0).slowness is None
+    assert recorder.snapshot(CollectorCounts(0, 0, {}, {}), 0).slowness is None
 
 
 def test_status_says_it_with_a_code_of_its_own() -> None:

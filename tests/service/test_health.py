@@ -15,7 +15,7 @@ from mocapd.service.health import lost_frames
 )
 def test_a_damaged_frame_counts_once_as_lost(gaps: int, torn: int, lost: int) -> None:
     status = CaptureStatus("cam0", CaptureState.LIVE, "", 100, torn, 0, 30.0, None)
-    assert lost_frames(CameraMetrics(30.0, 20.0, CameraCounts(100, 100, 0, gaps)), status) == lost
+    assert lost_frames(CameraMetrics(30.0, CameraCounts(100, 100, 0, gaps)), status) == lost
 
 
 def test_a_camera_that_the_pipeline_does_not_know_yet_has_its_damage() -> None:

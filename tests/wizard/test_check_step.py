@@ -177,7 +177,7 @@ class LosingTracking:
 
     def metrics(self) -> Metrics:
         recorder = MetricsRecorder()
-        measured = recorder.snapshot(CollectorCounts(0, 0, {}, {}, {}), BEGIN_NS)
+        measured = recorder.snapshot(CollectorCounts(0, 0, {}, {}), BEGIN_NS)
         return replace(measured, tracking=Tracking.LIVE, slowness=self._slowness)
 
 
