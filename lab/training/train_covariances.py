@@ -120,7 +120,7 @@ def _sight(ids: Bytes, grid: Grid) -> Sight:
     map40, scale, centre = crop_id_map(ids)
     return Sight(
         ids, grid, float(grid.width * grid.stride), map40, scale * grid.stride, grid.to_pixels(np.array(centre)),
-        int((ids > 0).sum()), np.ones((1, 1), np.uint8), 31,
+        np.ones((1, 1), np.uint8), 31,
     )  # fmt: skip
 
 

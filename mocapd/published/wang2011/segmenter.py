@@ -32,7 +32,6 @@ class Sight:
     map40: Bytes
     map_scale: float
     centre_px: Floats
-    coloured: int
     mask: Bytes
     mask_shift: int
 
@@ -78,7 +77,7 @@ class Wang2011Segmenter:
             return None
         return Sight(
             ids, grid, scale * grid.stride * len(map40), map40, scale * grid.stride, grid.to_pixels(np.array(centre)),
-            coloured, mask, shift,
+            mask, shift,
         )  # fmt: skip
 
     def refine(self, pixels: Bytes, sight: Sight, distance: Singles) -> Bytes:
