@@ -21,7 +21,6 @@ def skeleton_frame(
     seq: int,
     publish_monotonic_ns: int,
     unix_from_monotonic_ns: int,
-    person: int = 0,
 ) -> SkeletonFrame:
     """The body as sent; lost: no joints. A pure function: the caller reads the clock.
 
@@ -30,7 +29,7 @@ def skeleton_frame(
     return SkeletonFrame(
         schema=SCHEMA,
         instance=instance,
-        person=person,
+        person=0,  # the only one
         seq=seq,
         capture_monotonic_ns=body.t_ns,
         capture_unix_ns=body.t_ns + unix_from_monotonic_ns,

@@ -9,15 +9,13 @@ from mocapd.types import Skeleton
 NOTICEABLE_M = 0.005
 
 
-def rest_skeleton(
-    skeleton: Skeleton, *, instance: str, stature_m: float, person: int = 0
-) -> RestSkeleton:
+def rest_skeleton(skeleton: Skeleton, *, instance: str, stature_m: float) -> RestSkeleton:
     """The T-pose as sent."""
     parents, rest_m = skeleton.parents, skeleton.rest_m
     offsets_m = rest_m - np.where(parents[:, None] >= 0, rest_m[parents], 0.0)
     return RestSkeleton(
         instance,
-        person,
+        0,  # the only person
         stature_m,
         skeleton.names,
         tuple(parents.tolist()),

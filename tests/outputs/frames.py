@@ -77,14 +77,13 @@ def uncertainties_m(names: Sequence[str]) -> Floats:
     return np.where(below, np.inf, 0.0101 + 0.01 * np.arange(len(names)))
 
 
-def whole_frame(seq: int = 0, person: int = 0) -> SkeletonFrame:
+def whole_frame(seq: int = 0) -> SkeletonFrame:
     """All 22 joints of `left_hand_up`."""
     body, skeleton = left_hand_up()
     return skeleton_frame(
         body,
         skeleton,
         instance="pc",
-        person=person,
         seq=seq,
         publish_monotonic_ns=PUBLISH_NS,
         unix_from_monotonic_ns=UNIX_OFFSET_NS,

@@ -51,8 +51,8 @@ def test_local_rotations_compose_to_the_global_ones() -> None:
 
 
 def test_times_and_names_are_carried_on() -> None:
-    frame = whole_frame(seq=12, person=3)
-    assert (frame.schema, frame.instance, frame.person, frame.seq) == (SCHEMA, "pc", 3, 12)
+    frame = whole_frame(seq=12)
+    assert (frame.schema, frame.instance, frame.person, frame.seq) == (SCHEMA, "pc", 0, 12)
     assert frame.capture_monotonic_ns == CAPTURE_NS
     assert frame.capture_unix_ns == CAPTURE_NS + UNIX_OFFSET_NS
     assert frame.publish_monotonic_ns == PUBLISH_NS
