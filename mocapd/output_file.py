@@ -3,12 +3,12 @@
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from mocapd.boundary.files import MissingError, is_absent, is_folder, read_beginning
-from mocapd.errors import CannotCreateError, InputError, mend_of
+from mocapd.errors import CannotCreateError, InputError, creation_errors
 from mocapd.whole_file import whole_file
 
 _HEAD_BYTES = 4096
@@ -50,10 +50,8 @@ class OutputFile:
         """Call before a long run: raises CannotCreateError when the file is not writable."""
         self.check_replaceable()
         folder, prefix = self.path.absolute().parent, f".{self.path.name}."
-        try:
+        with self._named_errors():
             descriptor, name = tempfile.mkstemp(dir=folder, prefix=prefix)
-        except OSError as error:
-            raise self._cannot(error) from None
         os.close(descriptor)
         Path(name).unlink()
 
@@ -61,17 +59,14 @@ class OutputFile:
     def writing(self) -> Iterator[Path]:
         """Yields a path to write to, which atomically becomes `path` on success. Raises CannotCreateError."""
         self.check_replaceable()
-        try:
-            with whole_file(self.path) as partial:
-                yield partial
-                self.check_replaceable()  # another process may have created it
-        except OSError as error:
-            raise self._cannot(error) from None
+        with self._named_errors(), whole_file(self.path) as partial:
+            yield partial
+            self.check_replaceable()  # another process may have created it
 
     def check_replaceable(self) -> None:
         """Raises CannotCreateError for a file that must not be replaced."""
         path = str(self.path)
-        elsewhere = "choose another name" + (f" with {self.option}" if self.option else "")
+        elsewhere = self._choose_another("name")
         if is_absent(self.path):
             return
         if any(_are_same(source, self.path) for source in self.inputs):
@@ -94,14 +89,11 @@ class OutputFile:
             elsewhere if is_spared else f"{elsewhere}, or replace it with --force",
         )
 
-    def _cannot(self, error: OSError) -> CannotCreateError:
-        return CannotCreateError(
-            f"cannot be written ({error.strerror})",
-            str(self.path),
-            mend_of(
-                error, "choose another place" + (f" with {self.option}" if self.option else "")
-            ),
-        )
+    def _choose_another(self, what: str) -> str:
+        return f"choose another {what}" + (f" with {self.option}" if self.option else "")
+
+    def _named_errors(self) -> AbstractContextManager[None]:
+        return creation_errors(self.path, self._choose_another("place"))
 
 
 def _are_same(source: Path, target: Path) -> bool:

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from mocapd.boundary.files import read_text
-from mocapd.errors import CannotCreateError, InputError, MalformedError
+from mocapd.errors import InputError, MalformedError, creation_errors
 from mocapd.types import Floats
 from mocapd.whole_file import whole_file
 
@@ -84,13 +84,8 @@ def loop_ms() -> float:
 
 def write_gate(path: Path, file: GateFile) -> None:
     """Raises CannotCreateError."""
-    try:
-        with whole_file(path) as partial:
-            partial.write_bytes(msgspec.json.format(msgspec.json.encode(file), indent=1))
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), "choose another place with --out"
-        ) from None
+    with creation_errors(path, "choose another place with --out"), whole_file(path) as partial:
+        partial.write_bytes(msgspec.json.format(msgspec.json.encode(file), indent=1))
 
 
 def read_gate(path: Path) -> GateFile:

@@ -13,7 +13,7 @@ import numpy as np
 from mocapd.body.bones import NAMES
 from mocapd.body.skeleton import PARENTS
 from mocapd.body.surface import posed_vertices
-from mocapd.errors import CannotCreateError
+from mocapd.errors import CannotCreateError, creation_errors
 from mocapd.geometry.rig_file import camera_to_dict
 from mocapd.sim.film import Progress
 from mocapd.sim.renderer import CameraRenderer, camera_renderers
@@ -53,7 +53,7 @@ def export_capture(
     job = _Job(
         scenario, world, camera_renderers(world), directory, round(seconds * scenario.fps_hz)
     )
-    try:
+    with creation_errors(directory, "choose another directory", "the capture cannot be written"):
         shirt = scenario.clothes.shirt != "plain"
         for folder in (*(("scribble", "model") if shirt else ()), "labels", "masks"):
             (directory / folder).mkdir(parents=True, exist_ok=True)
@@ -63,10 +63,6 @@ def export_capture(
         _write_truth(job)
         for k in range(len(job.renderers)):
             _write_video(job, k, progress)
-    except OSError as error:
-        raise CannotCreateError(
-            f"the capture cannot be written ({error})", str(directory), "choose another directory"
-        ) from None
 
 
 def _write_texts(job: _Job, notes: Mapping[str, float]) -> None:

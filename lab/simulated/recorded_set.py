@@ -13,7 +13,7 @@ from lab.simulated.plain_plan import plain_plan
 from lab.simulated.ring_plan import ring_plan
 from lab.simulated.session_plan import PlannedSession, plan
 from mocapd.assets import asset_path
-from mocapd.errors import CannotCreateError, ConfigError, InputError
+from mocapd.errors import ConfigError, InputError, creation_errors
 from mocapd.file_lock import one_at_a_time
 from mocapd.session.tracker_setup import Progress
 from mocapd.sim.film import film_key
@@ -96,12 +96,8 @@ def _recorded(session: PlannedSession, folder: Path, progress: Progress) -> Path
         return path
     partial = path.with_name(f".{path.name}.partial")
     shutil.rmtree(partial, ignore_errors=True)  # of a run that was ended
-    try:
+    with creation_errors(partial, "set another cache_dir", "cannot be made"):
         partial.mkdir(parents=True)
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be made ({error.strerror})", str(partial), "make room or set another cache_dir"
-        ) from None
 
     def told(done: int, of: int) -> None:
         progress(f"recording {session.name}", done, of)

@@ -17,13 +17,7 @@ from mocapd.boundary.parsing import decode_json
 from mocapd.control.control_messages import Answer, Refused, Request, Verb
 from mocapd.control.line import read_line
 from mocapd.control.socket_place import may_command, peer_of, short_address
-from mocapd.errors import (
-    CannotCreateError,
-    MalformedError,
-    MocapdError,
-    PermissionDeniedError,
-    mend_of,
-)
+from mocapd.errors import MalformedError, MocapdError, PermissionDeniedError, creation_errors
 
 LONGEST_REQUEST = 4 << 10  # [bytes]
 ASK_S = 2.0  # timeout of receiving a request and of sending the answer [s]
@@ -48,19 +42,14 @@ class ControlSocket:
 
     def open(self) -> None:
         """Starts serving. Raises CannotCreateError."""
-        try:
-            self._path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        folder, mend = self._path.parent, "set XDG_RUNTIME_DIR to your own folder"
+        with creation_errors(folder, mend, "no control socket can be made"):
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             # renamed once it listens: whoever looks for daemons removes sockets at which nobody does
             hidden = self._path.with_name(f".{self._path.name}")
             hidden.unlink(missing_ok=True)  # left by an earlier process with our pid
             self._server = _Server(hidden, self._answer, self._died)
             hidden.rename(self._path)
-        except OSError as error:
-            raise CannotCreateError(
-                f"no control socket can be made: {error.strerror}",
-                str(self._path.parent),
-                mend_of(error, "set XDG_RUNTIME_DIR to your own folder"),
-            ) from None
         threading.Thread(
             target=self._server.serve_forever, args=(_LOOK_EVERY_S,), name="control", daemon=True
         ).start()

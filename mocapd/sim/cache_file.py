@@ -12,7 +12,7 @@ import msgspec
 
 from mocapd.boundary.files import read_file
 from mocapd.boundary.parsing import decode_msgpack
-from mocapd.errors import CannotCreateError, InputError
+from mocapd.errors import InputError, creation_errors
 from mocapd.file_lock import one_at_a_time
 from mocapd.whole_file import whole_file
 
@@ -81,17 +81,12 @@ def read_cached(path: Path, key: str, kind: type[F]) -> F | None:
 def write_cached(path: Path, file: Keyed) -> None:
     """Atomic write. Raises CannotCreateError."""
     data = msgspec.msgpack.encode(file)
-    try:
+    mend = "choose another cache directory"
+    with creation_errors(path, mend, "the simulator's cache cannot be written"):
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         with whole_file(path) as partial, partial.open("wb") as out:
             out.write(_checksum(data))
             out.write(data)
-    except OSError as error:
-        raise CannotCreateError(
-            f"the simulator's cache cannot be written ({error})",
-            str(path),
-            "free space there or choose another cache directory",
-        ) from None
 
 
 def _checksum(data: bytes | memoryview) -> bytes:

@@ -21,7 +21,7 @@ from msgspec import Meta
 
 from mocapd.boundary.files import is_folder, read_file
 from mocapd.boundary.parsing import decode_json
-from mocapd.errors import CannotCreateError, InputError, MalformedError, UnavailableError, mend_of
+from mocapd.errors import InputError, MalformedError, UnavailableError, creation_errors
 from mocapd.outputs.http_answer import read_body
 from mocapd.outputs.socket_owners import listens
 from mocapd.web.access import TOKEN
@@ -85,19 +85,13 @@ def redirect_file(folder: Path, pid: int) -> Path:
 def announce(place: Place, port: int, token: str) -> None:
     """Announce our page in files for our user only, because they hold the token. Raises CannotCreateError."""
     redirect = redirect_file(place.folder, os.getpid())
-    try:
+    with creation_errors(place.folder, "set XDG_RUNTIME_DIR to your own folder"):
         place.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         _write(redirect, _redirect_to(url_of(port, token) + SETUP).encode())
         if place.findable:
             state_dir = str(place.state_dir.resolve())
             said = _Said(port, token, os.getpid(), state_dir, place.instance)
             _write(redirect.with_suffix(".json"), msgspec.json.encode(said))
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written: {error.strerror}",
-            str(place.folder),
-            mend_of(error, "set XDG_RUNTIME_DIR to your own folder"),
-        ) from error
 
 
 def withdraw(folder: Path) -> None:

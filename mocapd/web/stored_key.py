@@ -5,7 +5,7 @@ import secrets
 from pathlib import Path
 
 from mocapd.boundary.files import MissingError, read_text
-from mocapd.errors import CannotCreateError, InputError, mend_of
+from mocapd.errors import InputError, creation_errors
 from mocapd.whole_file import whole_file
 
 _KEY = re.compile(r"[A-Za-z0-9_-]{32}")
@@ -36,16 +36,10 @@ def stored_key(path: Path) -> str:
 
 def _make(path: Path) -> str:
     key = _new_key()
-    try:
+    with creation_errors(path, "let this user write there"):
         path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         with whole_file(path, private=True) as partial:
             partial.write_text(f"{key}\n", encoding="ascii")
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written: {error.strerror}",
-            str(path),
-            mend_of(error, "let this user write there"),
-        ) from error
     return key
 
 

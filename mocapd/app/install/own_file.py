@@ -10,7 +10,12 @@ from enum import StrEnum
 from pathlib import Path
 
 from mocapd.boundary.files import MissingError, read_file
-from mocapd.errors import CannotCreateError, InputError, PermissionDeniedError, mend_of
+from mocapd.errors import (
+    CannotCreateError,
+    InputError,
+    PermissionDeniedError,
+    creation_errors,
+)
 from mocapd.whole_file import whole_file
 
 MODE = 0o644
@@ -132,15 +137,10 @@ def _write(path: Path, data: bytes, mode: int = MODE, gid: int | None = None) ->
 @contextmanager
 def _named_errors(path: Path) -> Iterator[None]:
     """Converts OSError to MocapdError."""
-    try:
-        yield
-    except PermissionError as error:
-        raise PermissionDeniedError(
-            f"cannot be changed ({error.strerror})", str(path), "run it as root, or with --user"
-        ) from None
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be changed ({error.strerror})",
-            str(path),
-            mend_of(error, "make the folder writable"),
-        ) from None
+    with creation_errors(path, "make the folder writable", "cannot be changed"):
+        try:
+            yield
+        except PermissionError as error:
+            raise PermissionDeniedError(
+                f"cannot be changed ({error.strerror})", str(path), "run it as root, or with --user"
+            ) from None

@@ -13,7 +13,7 @@ from mocapd.boundary.parsing import convert, parse_toml
 from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.toml_text import toml_text
 from mocapd.capture.kinds.source_kinds import identity_of
-from mocapd.errors import CannotCreateError, ConfigError, MocapdError, NewerFileError
+from mocapd.errors import ConfigError, MocapdError, NewerFileError, creation_errors
 from mocapd.quarantine import quarantine
 from mocapd.whole_file import whole_file
 from mocapd.wizard.draft import Draft, DraftCamera
@@ -133,17 +133,13 @@ def store_intrinsics(draft: Draft, state_dir: Path, when: datetime) -> None:
         return
     made = {(record.camera, record.size_px) for record in new}
     path = state_dir / FILE_NAME
-    try:
+    with creation_errors(path, "let this user write there"):
         before = _readable(path)
         rest = [record for record in before if (record.camera, record.size_px) not in made]
         data = msgspec.to_builtins(_File(SCHEMA, (*rest, *new)), builtin_types=(datetime,))
         state_dir.mkdir(parents=True, exist_ok=True)
         with whole_file(path) as partial:
             partial.write_text(_HEADER + toml_text(data), encoding="utf-8")
-    except OSError as error:
-        raise CannotCreateError(
-            f"cannot be written ({error.strerror})", str(path), "make room on the disk"
-        ) from None
 
 
 def _readable(path: Path) -> tuple[SavedIntrinsics, ...]:
