@@ -7,15 +7,8 @@ from pathlib import Path
 from mocapd.capture.webcam.usb_bandwidth import CrowdedBus
 from mocapd.capture.webcam.webcam_listing import CameraInfo
 from mocapd.control.control_messages import StatusReport
+from mocapd.errors import Problem
 from mocapd.wizard.draft import DraftCamera
-
-
-@dataclass(frozen=True, slots=True)
-class FactTrouble:
-    """Text and fix of a MocapdError."""
-
-    what: str
-    fix: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +16,7 @@ class ConfigFacts:
     """file: None without one; trouble: why it is invalid, in which case the built-in values are examined."""
 
     file: Path | None
-    trouble: FactTrouble | None = None
+    trouble: Problem | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +64,7 @@ class FolderFacts:
 
     key: str
     path: Path
-    trouble: FactTrouble | None
+    trouble: Problem | None
     open_to_others: bool
     free_bytes: int | None
     holds_little: bool = False
@@ -83,7 +76,7 @@ class CalibrationFacts:
     errors, None if unknown; cameras: their number."""
 
     path: Path | None
-    trouble: FactTrouble | None = None
+    trouble: Problem | None = None
     age_s: float = 0.0
     rms_px: float | None = None
     play_area_cm: float | None = None

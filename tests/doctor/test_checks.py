@@ -27,7 +27,6 @@ from mocapd.doctor.facts import (
     CameraFacts,
     ClockFacts,
     ConfigFacts,
-    FactTrouble,
     FolderFacts,
     LibraryFacts,
     PortFacts,
@@ -36,6 +35,7 @@ from mocapd.doctor.facts import (
     UserFacts,
 )
 from mocapd.doctor.finding import Verdict
+from mocapd.errors import Problem
 from mocapd.wizard.draft import DraftCamera
 from tests.control.reports import CAMERA, report
 
@@ -137,7 +137,7 @@ FOLDER = FolderFacts("state_dir", Path("/var/lib/mocapd"), None, False, 20 << 30
         (replace(FOLDER, free_bytes=5 << 20, holds_little=True), OK, "5 MB free"),
         (replace(FOLDER, free_bytes=1000, holds_little=True), BAD, "0 MB free"),
         (replace(FOLDER, open_to_others=True), WARN, "chmod 700 /var/lib/mocapd"),
-        (replace(FOLDER, trouble=FactTrouble("cannot be written to", "chown it")), BAD, "chown it"),
+        (replace(FOLDER, trouble=Problem("cannot be written to", fix="chown it")), BAD, "chown it"),
     ],
 )
 def test_folders(facts: FolderFacts, verdict: Verdict, says: str) -> None:
@@ -163,7 +163,7 @@ GOOD = CalibrationFacts(Path("c.toml"), None, 3 * DAY_S, 0.3, 0.8, 2)
         (replace(GOOD, rms_px=None, play_area_cm=None), OK, "3 days old"),
         (CalibrationFacts(None), WARN, "mocapd calibrate"),
         (
-            replace(GOOD, trouble=FactTrouble("has schema 9", "use the mocapd that wrote it")),
+            replace(GOOD, trouble=Problem("has schema 9", fix="use the mocapd that wrote it")),
             BAD,
             "9",
         ),
@@ -228,7 +228,7 @@ def test_libraries_and_the_extra_for_vrchat() -> None:
 def test_configuration_and_daemons() -> None:
     assert check_config(ConfigFacts(Path("config.toml"))).verdict is OK
     broken = check_config(
-        ConfigFacts(None, FactTrouble("config.toml:3: no key 'colour'", "colour?"))
+        ConfigFacts(None, Problem("config.toml:3: no key 'colour'", fix="colour?"))
     )
     assert (broken.verdict, broken.fix) == (BAD, "colour?")
     assert [one.verdict for one in check_daemons(())] == [OK]

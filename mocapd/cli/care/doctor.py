@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
-from mocapd.errors import one_line
+from mocapd.errors import Problem, one_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,14 +31,13 @@ def doctor(
     effective, error = config_to_look_after(config, settings)
 
     from mocapd.doctor.examination import examine
-    from mocapd.doctor.facts import FactTrouble
     from mocapd.doctor.finding import Verdict
     from mocapd.doctor.gathering.gathering import gather_facts
 
     trouble = None
     if error is not None:
         where = f"{error.where}: " if error.where else ""
-        trouble = FactTrouble(f"{where}{error.what}", error.fix)
+        trouble = Problem(f"{where}{error.what}", fix=error.fix)
     findings = examine(gather_facts(effective, trouble))
     print("\n".join(map(_as_json, findings)) if as_json else _as_text(findings))
     raise typer.Exit(int(any(one.verdict is Verdict.BAD for one in findings)))

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from mocapd.calibration.calibration_file import FILE_NAME, LoadedCalibration, find_calibration
 from mocapd.config.sections import Config
-from mocapd.doctor.facts import CalibrationFacts, FactTrouble
-from mocapd.errors import MocapdError
+from mocapd.doctor.facts import CalibrationFacts
+from mocapd.errors import MocapdError, Problem
 from mocapd.geometry.rig_file import load_rig
 
 
@@ -19,7 +19,7 @@ def calibration_facts(config: Config) -> tuple[CalibrationFacts, LoadedCalibrati
         if saved is None and config.rig is not None:
             return _of_rig_file(config.rig), None
     except MocapdError as error:
-        return CalibrationFacts(place, FactTrouble(error.what, error.fix)), None
+        return CalibrationFacts(place, Problem.of(error)), None
     if saved is None:
         return CalibrationFacts(None), None
     made, room = saved.tables.made.when, saved.tables.room

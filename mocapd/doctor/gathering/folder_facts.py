@@ -9,8 +9,8 @@ from mocapd.boundary.files import is_folder
 from mocapd.boundary.folders import readable_by_others, require_own_folder
 from mocapd.config.runtime_folder import runtime_folder
 from mocapd.config.sections import Config
-from mocapd.doctor.facts import FactTrouble, FolderFacts
-from mocapd.errors import MocapdError
+from mocapd.doctor.facts import FolderFacts
+from mocapd.errors import MocapdError, Problem
 
 
 def folder_facts(config: Config) -> tuple[FolderFacts, ...]:
@@ -30,14 +30,14 @@ def _folder(key: str, path: Path, runs_from_it: bool = False) -> FolderFacts:
     there = _nearest(path)
     trouble = None
     if not is_folder(there):
-        trouble = FactTrouble(f"{there} is no folder", f"move it away, or set {key} to another")
+        trouble = Problem(f"{there} is no folder", fix=f"move it away, or set {key} to another")
     elif runs_from_it and there == path:
         try:
             require_own_folder(path)
         except MocapdError as error:
-            trouble = FactTrouble(error.what, error.fix)
+            trouble = Problem.of(error)
     if trouble is None and not os.access(there, os.W_OK | os.X_OK):
-        trouble = FactTrouble("cannot be written to", f"chown or chmod it, or set {key} to another")
+        trouble = Problem("cannot be written to", fix=f"chown or chmod it, or set {key} to another")
     try:
         free: int | None = shutil.disk_usage(there).free
     except OSError:

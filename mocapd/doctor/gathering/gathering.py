@@ -2,7 +2,7 @@
 
 from mocapd.config.effective import Effective
 from mocapd.control.target_process import find_daemons
-from mocapd.doctor.facts import ConfigFacts, Facts, FactTrouble
+from mocapd.doctor.facts import ConfigFacts, Facts
 from mocapd.doctor.gathering.calibration_facts import calibration_facts
 from mocapd.doctor.gathering.camera_facts import camera_facts
 from mocapd.doctor.gathering.folder_facts import folder_facts
@@ -15,9 +15,10 @@ from mocapd.doctor.gathering.system_facts import (
     state_facts,
     user_facts,
 )
+from mocapd.errors import Problem
 
 
-def gather_facts(effective: Effective, trouble: FactTrouble | None) -> Facts:
+def gather_facts(effective: Effective, trouble: Problem | None) -> Facts:
     """trouble: why the user's configuration is invalid; `effective` then holds the built-in values."""
     config = effective.config
     calibration, saved = calibration_facts(config)
