@@ -18,33 +18,9 @@ def _no_joints(params: ClothesParams) -> ClothesParams:
     return replace(params, joints=replace(params.joints, term=term))
 
 
-def _no_texture(params: ClothesParams) -> ClothesParams:
-    return replace(params, distances=replace(params.distances, least_alike=_MORE_THAN_SAME))
-
-
-def _no_depths(params: ClothesParams) -> ClothesParams:
-    return replace(params, depths=replace(params.depths, least_alike=_MORE_THAN_SAME))
-
-
-def _no_floor(params: ClothesParams) -> ClothesParams:
-    return replace(params, floor=FloorParams(under_sd_m=_SOFT_M, on_floor_sd_m=_SOFT_M))
-
-
 def _no_arm_search(params: ClothesParams) -> ClothesParams:
     never = replace(params.limbs, uncertain_arm=_CERTAIN, uncertain_arm_small_baseline=_CERTAIN)
     return replace(params, limbs=never)
-
-
-def _no_leg_search(params: ClothesParams) -> ClothesParams:
-    return replace(params, legs=replace(params.legs, uncertain=_CERTAIN))
-
-
-def _no_shadows(params: ClothesParams) -> ClothesParams:
-    return replace(params, background=replace(params.background, likely_shadow=(1.0, 0.0)))
-
-
-def _no_look_alikes(params: ClothesParams) -> ClothesParams:
-    return replace(params, alike=_MORE_THAN_SAME)
 
 
 def _no_limits(params: ClothesParams) -> ClothesParams:
@@ -55,39 +31,28 @@ def _no_limits(params: ClothesParams) -> ClothesParams:
 CLOTHES_ABLATIONS: Mapping[str, Callable[[ClothesParams], ClothesParams]] = MappingProxyType(
     {
         "no joints": _no_joints,
-        "no texture": _no_texture,
-        "no depths": _no_depths,
-        "no floor": _no_floor,
+        "no texture": lambda p: replace(
+            p, distances=replace(p.distances, least_alike=_MORE_THAN_SAME)
+        ),
+        "no depths": lambda p: replace(p, depths=replace(p.depths, least_alike=_MORE_THAN_SAME)),
+        "no floor": lambda p: replace(
+            p, floor=FloorParams(under_sd_m=_SOFT_M, on_floor_sd_m=_SOFT_M)
+        ),
         "no arm search": _no_arm_search,
-        "no shadows": _no_shadows,
-        "no leg search": _no_leg_search,
-        "no look-alikes": _no_look_alikes,
+        "no shadows": lambda p: replace(
+            p, background=replace(p.background, likely_shadow=(1.0, 0.0))
+        ),
+        "no leg search": lambda p: replace(p, legs=replace(p.legs, uncertain=_CERTAIN)),
+        "no look-alikes": lambda p: replace(p, alike=_MORE_THAN_SAME),
         "no limits": _no_limits,
     }
 )
 
-
-def _no_depth_noise(params: Hecht2009Params) -> Hecht2009Params:
-    return replace(params, motion=replace(params.motion, depth_noise=False))
-
-
-def _no_particle_constraints(params: Hecht2009Params) -> Hecht2009Params:
-    return replace(params, particle_constraints=False)
-
-
-def _no_occlusion(params: Hecht2009Params) -> Hecht2009Params:
-    return replace(params, score=replace(params.score, occlusion=False))
-
-
-def _no_appearance(params: Hecht2009Params) -> Hecht2009Params:
-    return replace(params, score=replace(params.score, appearance=False))
-
-
 HECHT2009_ABLATIONS: Mapping[str, Callable[[Hecht2009Params], Hecht2009Params]] = MappingProxyType(
     {
-        "no depth noise": _no_depth_noise,
-        "no particle constraints": _no_particle_constraints,
-        "no occlusion": _no_occlusion,
-        "no appearance": _no_appearance,
+        "no depth noise": lambda p: replace(p, motion=replace(p.motion, depth_noise=False)),
+        "no particle constraints": lambda p: replace(p, particle_constraints=False),
+        "no occlusion": lambda p: replace(p, score=replace(p.score, occlusion=False)),
+        "no appearance": lambda p: replace(p, score=replace(p.score, appearance=False)),
     }
 )
