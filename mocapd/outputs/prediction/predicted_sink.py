@@ -6,13 +6,14 @@ import threading
 import msgspec
 
 from mocapd.clock import NS_PER_S, monotonic_ns, nanoseconds, seconds
+from mocapd.errors import MocapdError
 from mocapd.outputs.base import Sink, SinkStatus
 from mocapd.outputs.messages import StateMessage
 from mocapd.outputs.prediction.pose_predictor import PosePredictor
-from mocapd.outputs.sink_thread import SinkThread
 from mocapd.outputs.wire import SkeletonFrame
 
 _SILENT_NS = NS_PER_S // 4  # time since the newest frame after which nothing is sent
+_JOIN_S = 1.0  # how long `close` waits for a send under way [s]
 
 
 class PredictedSink:
@@ -20,7 +21,7 @@ class PredictedSink:
     times a second. `lost` is sent once, on arrival.
 
     Predicted frames have sequence numbers of their own. An error of the inner sink ends the thread, and the next
-    `send` raises it.
+    `send` raises it, so that the process ends instead of continuing without this output.
     """
 
     def __init__(self, sink: Sink, rate_hz: float, ahead_s: float) -> None:
@@ -31,18 +32,22 @@ class PredictedSink:
         self._changed = threading.Condition()  # guards what follows
         self._frames: list[SkeletonFrame] = []
         self._closed = True
-        self._thread = SinkThread(sink.name, self._run)
+        self._thread: threading.Thread | None = None
+        self._error: MocapdError | None = None
 
     def open(self) -> None:
         """Open the inner sink, in the caller's thread so that its errors arrive there."""
         self._sink.open()
         with self._changed:
             self._frames, self._closed = [], False
+        self._error = None
+        self._thread = threading.Thread(target=self._run, name=f"output-{self.name}", daemon=True)
         self._thread.start()
 
     def send(self, frame: SkeletonFrame) -> None:
         """Queue the frame for the thread. Raises the error that ended the thread: a MocapdError or RuntimeError."""
-        self._thread.check()
+        if self._thread is not None and not self._thread.is_alive():
+            raise self._error or RuntimeError(f"the thread of output {self.name} died, see above")
         with self._changed:
             if not self._closed:
                 self._frames.append(frame)
@@ -60,10 +65,18 @@ class PredictedSink:
         with self._changed:
             self._closed = True
             self._changed.notify()
-        self._thread.join()
+        if self._thread is not None:
+            self._thread.join(_JOIN_S)
+            self._thread = None
         self._sink.close()
 
     def _run(self) -> None:
+        try:
+            self._send_predicted()
+        except MocapdError as error:  # `send` raises it in the pipeline's thread
+            self._error = error
+
+    def _send_predicted(self) -> None:
         predictor = PosePredictor()
         newest: SkeletonFrame | None = None
         due_ns = monotonic_ns()

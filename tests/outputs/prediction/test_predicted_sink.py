@@ -147,7 +147,7 @@ def test_a_defect_of_the_output_ends_the_next_send_too() -> None:
     kept.error = ZeroDivisionError()
     with opened(kept) as sink:
         sink.send(as_now(0.0))
-        assert eventually(lambda: not sink._thread._thread.is_alive())  # type: ignore[union-attr]
+        assert eventually(lambda: not sink._thread.is_alive())  # type: ignore[union-attr]
         with pytest.raises(RuntimeError, match="output kept died"):
             sink.send(as_now(0.0))
 
