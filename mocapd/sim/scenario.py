@@ -18,13 +18,7 @@ from mocapd.sim.person_spec import (
     BodySpec,
     Bystander,
     Clothes,
-    ClothesEvent,
-    Jacket,
     MotionSpec,
-    Oscillation,
-    PoseKeyframe,
-    Screen,
-    Weave,
 )
 from mocapd.sim.scenario_values import (
     Fraction,
@@ -195,25 +189,8 @@ def _config_error(message: str, where: str) -> ConfigError:
 
 
 def _all_keys() -> list[str]:
-    tables = (
-        CameraSpec,
-        BodySpec,
-        PoseKeyframe,
-        Oscillation,
-        MotionSpec,
-        Weave,
-        Jacket,
-        ClothesEvent,
-        Clothes,
-        Bystander,
-        Screen,
-        Span,
-        LightEvent,
-        Light,
-        Ambient,
-    )
-    tables += (SurfaceSpec, Thing, Room, Scenario)  # type: ignore[assignment]
-    return sorted({name for table in tables for name in table.__struct_fields__})
+    """Of every table of the file: they are in this module and in `person_spec`."""
+    return sorted({name for table in Table.__subclasses__() for name in table.__struct_fields__})
 
 
 def _check(s: Scenario, where: str) -> None:
