@@ -1,7 +1,6 @@
 """A person's motion at a constant rate: the input of every format."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -145,9 +144,9 @@ def duration_text(duration_s: float) -> str:
     return " ".join([*parts, f"{seconds} s"])
 
 
-def usual_rate_hz(times_ns: Ints, rates_hz: Sequence[float] = RATES_HZ) -> float:
+def usual_rate_hz(times_ns: Ints) -> float:
     """The rate of samples by their median distance, rounded to a hundredth [Hz]; 30 for too few samples."""
     if len(times_ns) < 2:
         return 30.0
     step_s = float(np.median(np.diff(times_ns))) * NS
-    return round(min(rates_hz[1], max(rates_hz[0], 1.0 / max(step_s, 1e-6))), 2)
+    return round(min(RATES_HZ[1], max(RATES_HZ[0], 1.0 / max(step_s, 1e-6))), 2)

@@ -45,8 +45,8 @@ class EffortControlParams:
 class EffortControl:
     """Gets every tracked frame set, with times from the caller: it needs no clock."""
 
-    def __init__(self, params: EffortControlParams | None = None) -> None:
-        self._params = p = params if params is not None else EffortControlParams()
+    def __init__(self) -> None:
+        self._params = p = EffortControlParams()
         self.effort = Effort.FULL
         self._period_s: float | None = None
         self._last: tuple[int, int] | None = None  # the last set's capture time [ns], and number

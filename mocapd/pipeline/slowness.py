@@ -60,8 +60,8 @@ class Slowness:
 class SlownessWatch:
     """Judges the last seconds after each frame set, with times from the caller: it needs no clock."""
 
-    def __init__(self, params: SlownessParams | None = None) -> None:
-        self._params = params if params is not None else SlownessParams()
+    def __init__(self) -> None:
+        self._params = SlownessParams()
         self._sets: deque[tuple[int, int, int]] = deque()  # end [ns], number, busy [ns]
         self._is_slow = False
 

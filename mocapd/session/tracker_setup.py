@@ -1,12 +1,11 @@
 """Builds a tracker, warms it up, and makes its caches."""
 
 import logging
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from mocapd.body.shape import BodyShape
 from mocapd.calibration.calibration_record import Calibration, ShirtColours
@@ -72,14 +71,12 @@ def cache_resources(
     cache_dir: Path,
     progress: Progress,
     tracking: TrackingStateParams | None = None,
-    params: Mapping[str, Any] | None = None,
 ) -> Resources:
-    """Resources with a cache folder and progress bars; params: see Resources."""
+    """Resources with a cache folder and progress bars."""
     return Resources(
         cache_dir=cache_dir,
         progress=lambda share: progress("pose database", round(100 * share), 100),
         tracking=tracking,
-        params=params or {},
     )
 
 

@@ -36,10 +36,10 @@ class InstanceState:
     trouble: str = ""
 
 
-def list_instances(session: zenoh.Session, timeout_s: float = ASK_S) -> tuple[InstanceState, ...]:
+def list_instances(session: zenoh.Session) -> tuple[InstanceState, ...]:
     """Every live daemon on this session's bus, by name, by one query."""
     instances = Instances()
-    instances.ask(session, timeout_s)
+    instances.ask(session, ASK_S)
     return tuple(state for state in instances.states() if state.alive)
 
 

@@ -70,7 +70,6 @@ def remember_illumination(
     references: tuple[Floats, ...],
     W: Floats,
     min_distance: float = REFERENCE_DISTANCE,
-    capacity: int = REFERENCE_CAPACITY,
 ) -> tuple[Floats, ...]:
     """The reference illuminations with W added, if it is farther than `min_distance` from each.
 
@@ -79,7 +78,7 @@ def remember_illumination(
     """
     if any(frobenius_distance(W, other) <= min_distance for other in references):
         return references
-    if len(references) >= capacity:
+    if len(references) >= REFERENCE_CAPACITY:
         references = references[:1] + references[2:]
     return (*references, W)
 
