@@ -12,6 +12,7 @@ from mocapd.body.arrays import PosedJoints
 from mocapd.body.skeleton import INDEX
 from mocapd.geometry.camera_model import project
 from mocapd.shirt.segmentation import shirt_appearance
+from mocapd.shirt.segmentation.shirt_appearance import ShirtAppearance
 from mocapd.types import Bytes, Camera, Floats, Singles
 
 Disc = tuple[float, float, float]  # x, y, radius [work px]
@@ -98,9 +99,9 @@ def whitening(sums: Floats, cloth_sd: float, noise_sd: float, shading_sd: float)
     """affine (3,4) for `classify`, of skin; far from every pixel while the model is invalid."""
     if sums[0] < _LEAST_SUM_PX:
         return NOWHERE
-    mean, covariance = shirt_appearance.camera_gaussians(
-        np.eye(3), np.zeros((1, 4)), 1.0, (sums[3:0:-1] / sums[0])[None], np.zeros((1, 3, 3)),
-        cloth_sd, noise_sd, shading_sd,
+    unmeasured = ShirtAppearance(np.eye(3), np.zeros((1, 4)))
+    mean, covariance = shirt_appearance.gaussians(
+        unmeasured, (sums[3:0:-1] / sums[0])[None], np.zeros((1, 3, 3)), cloth_sd, noise_sd, shading_sd
     )  # fmt: skip
     affine: Singles = shirt_appearance.whitening(mean, covariance)[0]
     return affine

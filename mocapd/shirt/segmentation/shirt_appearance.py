@@ -19,7 +19,7 @@ _PRIOR_PX = 60.0  # weight of the prior against learned pixels
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShirtAppearance:
-    """W (3,3), model_from_camera on RGB 0..1; sums (10,4): decayed count and BGR sums of each colour."""
+    """W (3,3), model_from_camera on RGB 0..1; sums (N,4): decayed count and BGR sums of each colour."""
 
     W: Floats
     sums: Floats
@@ -49,39 +49,15 @@ def gaussians(
     noise_sd: float,
     shading_sd: float,
 ) -> tuple[Floats, Floats]:
-    """Means (10,3) and covariances (10,3,3) in the camera's BGR 0..1."""
+    """Means (N,3) and covariances (N,3,3) in the camera's BGR 0..1: the model's colours behind W, and the measured ones."""
     # the mean is the camera's own once the colour is well visible; a spread learned from what was
     # classified would grow by itself until it covers skin and trousers, so the model's stays
-    return camera_gaussians(
-        appearance.W,
-        appearance.sums,
-        _PRIOR_PX,
-        model_mean,
-        model_covariance,
-        cloth_sd,
-        noise_sd,
-        shading_sd,
-    )
-
-
-def camera_gaussians(
-    W: Floats,
-    sums: Floats,
-    prior_px: float,
-    model_mean: Floats,
-    model_covariance: Floats,
-    cloth_sd: float,
-    noise_sd: float,
-    shading_sd: float,
-) -> tuple[Floats, Floats]:
-    """Means (N,3) and covariances (N,3,3) in BGR 0..1 of the model's colours behind W (3,3), blended with
-    the measured `sums` (N,4): both weigh the same at prior_px pixels."""
     # in numpy: as a kernel it took three seconds to compile, and saved 0.1 ms a frame
-    inverse = np.linalg.inv(W)[::-1]  # rows to b, g, r
-    n = sums[:, :1]
-    trust = n / (n + prior_px)
+    inverse = np.linalg.inv(appearance.W)[::-1]  # rows to b, g, r
+    n = appearance.sums[:, :1]
+    trust = n / (n + _PRIOR_PX)
     expected = model_mean @ inverse.T
-    measured = np.divide(sums[:, 1:], n, out=expected.copy(), where=n > 0.0)
+    measured = np.divide(appearance.sums[:, 1:], n, out=expected.copy(), where=n > 0.0)
     mean = trust * measured + (1.0 - trust) * expected
     eye = np.eye(3)
     covariance = inverse @ (model_covariance + cloth_sd**2 * eye) @ inverse.T + noise_sd**2 * eye
