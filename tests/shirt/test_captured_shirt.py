@@ -10,7 +10,7 @@ import pytest
 
 from mocapd.assets import asset_path
 from mocapd.shirt.colour.colour_model import ColourModel, fit_colour_model
-from mocapd.shirt.colour.colour_tables import ColourTables
+from mocapd.shirt.colour.colour_tables import colour_table
 from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.colour.strokes import read_labelled, stroke_means
 from mocapd.shirt.colour.white_balance import shade_precision, solve_white_balance
@@ -51,16 +51,15 @@ def test_the_shirt_is_read_under_the_light_it_was_scribbled_in(
     scribble = read_labelled(capture / "scribble" / "cam0.png")
     means, counts = stroke_means(scribble.pixels, scribble.labels)
     everywhere = np.ones((1, 1), dtype=np.uint8)
-    tables = ColourTables()
     correct = {}
     for variant, T in ((model, 3.0), (model.tolerating(), 2.0)):
         precision = shade_precision(model) if variant is not model else None
         W = solve_white_balance(means, model.mean, counts, precision=precision)
-        tables.refill(variant, W, T)
+        table = colour_table(variant, W, T)
         right = wrong = shirt = 0
         for frame, truth in frames_with_truth(capture):
             ids = np.zeros(truth.shape, dtype=np.uint8)
-            classify_by_table(frame, everywhere, 31, tables.ids, 0, 0, 1, ids)
+            classify_by_table(frame, everywhere, 31, table, 0, 0, 1, ids)
             shirt += (truth > 0).sum()
             right += ((ids == truth) & (truth > 0)).sum()
             wrong += ((ids != truth) & (ids > 0) & (truth > 0)).sum()

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from mocapd.shirt.colour.colour_model import ColourModel
-from mocapd.shirt.colour.colour_tables import ColourTables
+from mocapd.shirt.colour.colour_tables import colour_table
 from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.segmentation.segmentation_params import SegmentationParams
 from mocapd.types import Bytes, Floats, Ints
@@ -49,11 +49,9 @@ def colours_alone(pixels: Bytes, model: ColourModel, W: Floats) -> Bytes:
     """Colour ids (H,W) of a picture (H,W,3) BGR as the tracker classifies them without a pose (paper section
     5.2, step 1)."""
     p = SegmentationParams()
-    tables = ColourTables()
-    tolerant = model.tolerating(p.shading_sd, p.cloth_sd)
-    tables.refill(tolerant, W, p.first_threshold)
+    table = colour_table(model.tolerating(p.shading_sd, p.cloth_sd), W, p.first_threshold)
     ids = np.empty(pixels.shape[:2], np.uint8)
-    classify_by_table(np.ascontiguousarray(pixels), _EVERYWHERE, 31, tables.ids, 0, 0, 1, ids)
+    classify_by_table(np.ascontiguousarray(pixels), _EVERYWHERE, 31, table, 0, 0, 1, ids)
     return ids
 
 

@@ -11,7 +11,7 @@ from mocapd.fit.fit_params import TICK_S
 from mocapd.fit.idmap_renderer import IdMapRenderer, Roi
 from mocapd.fit.work_size import work_size
 from mocapd.shirt.colour.colour_model import ColourModel
-from mocapd.shirt.colour.colour_tables import ColourTables
+from mocapd.shirt.colour.colour_tables import colour_table
 from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.shirt.colour.white_balance import remember_illumination
 from mocapd.shirt.segmentation import bare_skin
@@ -91,13 +91,11 @@ class CameraSegmenter:
     _ids: Ids = field(init=False)
     _pixel_weight: Ids = field(init=False)
     _distance: Ids = field(init=False)
-    _tables: ColourTables = field(init=False)
 
     def __post_init__(self) -> None:
         w, h = self.size
         self._ids, self._pixel_weight = np.empty(h * w, np.uint8), np.empty(h * w, np.uint8)
         self._distance = np.empty((h // CELL + 1) * (w // CELL + 1) * 10, np.uint8)
-        self._tables = ColourTables()
         self.background = self.shared or RoomBackground(h, w, BackgroundParams())
         self.reset()
 
@@ -315,9 +313,9 @@ class CameraSegmenter:
         best: ShirtCandidate | None = None
         lights = [W * gain for gain in _GAINS for W in memory.references]
         for W in lights:
-            self._tables.refill(model, W, p.first_threshold)
+            table = colour_table(model, W, p.first_threshold)
             ids = np.empty((h, w), np.uint8)
-            classify_by_table(self.picture, _WHOLE, 31, self._tables.ids, 0, 0, 1, ids)
+            classify_by_table(self.picture, _WHOLE, 31, table, 0, 0, 1, ids)
             suppress_background(
                 self.picture,
                 self.background.mean,

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from mocapd.errors import ConfigError
 from mocapd.published.wang2011.classify_kernels import classify, classify_with_prior, sum_colours
 from mocapd.shirt.colour.colour_model import fold
-from mocapd.shirt.colour.colour_tables import ColourTables
+from mocapd.shirt.colour.colour_tables import colour_table
 from mocapd.shirt.colour.lut_kernels import classify_by_table
 from mocapd.types import Bytes
 from tests.published.wang2011 import naive
@@ -58,10 +57,9 @@ def test_a_region_is_that_part_of_the_frame(stride: int) -> None:
     part = np.zeros((10, 12), dtype=np.uint8)
     classify(pixels, coarse, 1, whitening.upper, whitening.offset, 3.0, 7, 5, stride, part)
     assert (part == whole[5 : 5 + 10 * stride : stride, 7 : 7 + 12 * stride : stride]).all()
-    tables = ColourTables()
-    tables.refill(MODEL, W, 3.0)
-    classify_by_table(pixels, coarse, 1, tables.ids, 0, 0, 1, whole)
-    classify_by_table(pixels, coarse, 1, tables.ids, 7, 5, stride, part)
+    table = colour_table(MODEL, W, 3.0)
+    classify_by_table(pixels, coarse, 1, table, 0, 0, 1, whole)
+    classify_by_table(pixels, coarse, 1, table, 7, 5, stride, part)
     assert (part == whole[5 : 5 + 10 * stride : stride, 7 : 7 + 12 * stride : stride]).all()
 
 
@@ -76,32 +74,22 @@ def cell_centres() -> Bytes:
 def test_a_table_holds_the_nearest_colours_of_the_middles_of_the_cells(
     model: object, threshold: float
 ) -> None:
-    tables = ColourTables()
-    tables.refill(model, W, threshold)  # type: ignore[arg-type]
+    table = colour_table(model, W, threshold)  # type: ignore[arg-type]
     centres = cell_centres().astype(np.float64) + 0.5
     costs = naive.mahalanobis(centres, W, model).reshape(-1, 10)  # type: ignore[arg-type]
     expected = naive.classify(costs[None], threshold, np.ones((1, 32**3), dtype=np.uint8))[0]
     clear = np.abs(costs.min(axis=1) - threshold) > 1e-3
     clear &= np.diff(np.sort(costs, axis=1)[:, :2], axis=1)[:, 0] > 1e-3
-    assert (tables.ids == expected)[clear].all()
-
-
-def test_a_table_refilled_is_a_table_made_new() -> None:
-    used, fresh = ColourTables(), ColourTables()
-    used.refill(TOLERANT, np.eye(3) * 1.4, 3.0)
-    used.refill(MODEL, W, 3.0)
-    fresh.refill(MODEL, W, 3.0)
-    assert (used.ids == fresh.ids).all()
+    assert (table == expected)[clear].all()
 
 
 def test_table_classification_looks_the_cells_up() -> None:
     pixels, mask = picture(), half_mask((48, 64))
-    tables = ColourTables()
-    tables.refill(MODEL, W, 3.0)
+    table = colour_table(MODEL, W, 3.0)
     out = np.full((48, 64), 77, dtype=np.uint8)
-    counts = classify_by_table(pixels, mask, 0, tables.ids, 0, 0, 1, out)
+    counts = classify_by_table(pixels, mask, 0, table, 0, 0, 1, out)
     b, g, r = np.moveaxis(pixels.astype(int) >> 3, 2, 0)
-    expected = np.where(mask > 0, tables.ids[(r << 10) | (g << 5) | b], 0)
+    expected = np.where(mask > 0, table[(r << 10) | (g << 5) | b], 0)
     assert (out == expected).all()
     assert counts == ((out > 0).sum(), (mask > 0).sum())
 
@@ -143,9 +131,3 @@ def test_sums_are_the_means_of_each_id() -> None:
     for k in range(1, 11):
         assert counts[k - 1] == (ids == k).sum()
         assert (sums[k - 1] == samples[ids == k].astype(int).sum(axis=0)[::-1]).all()
-
-
-@pytest.mark.parametrize("threshold", [0.0, -1.0, float("nan")])
-def test_thresholds_that_no_colour_is_within_are_refused(threshold: float) -> None:
-    with pytest.raises(ConfigError, match="threshold"):
-        ColourTables().refill(MODEL, W, threshold)
