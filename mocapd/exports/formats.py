@@ -10,10 +10,10 @@ from mocapd.exports.bvh.bvh_writer import bvh_text, frames_in_bvh
 from mocapd.exports.c3d.c3d_writer import MOST_FRAMES as MOST_C3D_FRAMES
 from mocapd.exports.c3d.c3d_writer import frames_in_c3d, write_c3d
 from mocapd.exports.csv_table.csv_writer import csv_text, frames_in_csv
-from mocapd.exports.glb.glb_writer import frames_in_glb, most_glb_frames, write_glb
+from mocapd.exports.glb.glb_writer import frames_in_glb, glb_bytes, most_glb_frames
 from mocapd.exports.sampled_motion import MOST_FRAMES, SampledMotion, too_long
 from mocapd.exports.trc.trc_writer import frames_in_trc, trc_text
-from mocapd.exports.vrma.vrma_writer import write_vrma
+from mocapd.exports.vrma.vrma_writer import vrma_bytes
 from mocapd.output_file import FileKind, OutputFile, kind_by_magic
 
 
@@ -35,11 +35,11 @@ def _bvh(motion: SampledMotion, path: Path, _name: str) -> None:
 
 
 def _glb(motion: SampledMotion, path: Path, _name: str) -> None:
-    write_glb(motion, path)
+    path.write_bytes(glb_bytes(motion))
 
 
 def _vrma(motion: SampledMotion, path: Path, _name: str) -> None:
-    write_vrma(motion, path)
+    path.write_bytes(vrma_bytes(motion))
 
 
 def _csv(motion: SampledMotion, path: Path, _name: str) -> None:

@@ -29,11 +29,6 @@ def most_glb_frames(joints: int) -> int:
     return min(_DISTINCT_TIMES, (_MOST_BYTES - _DOCUMENT_BYTES * (1 + joints)) // of_frame)
 
 
-def write_glb(motion: SampledMotion, path: Path) -> None:
-    """Write the file. Raises OSError."""
-    path.write_bytes(glb_bytes(motion))
-
-
 def frames_in_glb(path: Path) -> int:
     """The number of frames in a file of ours; 0 for a truncated one."""
     with path.open("rb") as file:

@@ -5,8 +5,6 @@ bones, translations of the hips alone, no mesh. Bones that no camera saw have a 
 and no motion, so that the avatar keeps its own there.
 """
 
-from pathlib import Path
-
 from mocapd.body.bones import NAMES
 from mocapd.errors import InputError
 from mocapd.exports.glb.animated_nodes import animation, root_of, skeleton_nodes
@@ -16,13 +14,8 @@ from mocapd.exports.sampled_motion import SampledMotion
 EXTENSION, _SPEC_VERSION = "VRMC_vrm_animation", "1.0"
 
 
-def write_vrma(motion: SampledMotion, path: Path) -> None:
-    """Write the file. Raises OSError; InputError for a skeleton that lacks bones of a VRM humanoid."""
-    path.write_bytes(vrma_bytes(motion))
-
-
 def vrma_bytes(motion: SampledMotion) -> bytes:
-    """The whole file."""
+    """The whole file. Raises InputError for a skeleton that lacks bones of a VRM humanoid."""
     names, buffer, root = motion.skeleton.names, GltfBuffer(), root_of(motion)
     missing = [name for name in NAMES if name not in names]
     if missing or names[root] != "hips":
