@@ -52,29 +52,6 @@ class StepFigures:
     stages: dict[str, StageFigures]
 
 
-class StageClock:
-    """Sums the time of each stage within a step. One step at a time."""
-
-    def __init__(self) -> None:
-        self._stages: dict[str, int] = {}
-        self._last_ns = 0
-
-    def start(self) -> None:
-        """Start a step."""
-        self._stages = {}
-        self._last_ns = time.perf_counter_ns()
-
-    def mark(self, stage: str) -> None:
-        """End the stage, which began at the end of the one before."""
-        now_ns = time.perf_counter_ns()
-        self._stages[stage] = self._stages.get(stage, 0) + now_ns - self._last_ns
-        self._last_ns = now_ns
-
-    def stages_ns(self) -> dict[str, int]:
-        """Time of each stage of this step [ns]."""
-        return self._stages
-
-
 def bench_tracker(
     ready: ReadyTracker, recording: BenchInput, progress: Callable[[int, int], None]
 ) -> StepFigures:
@@ -108,25 +85,30 @@ class _Samples:
         self._shape = shape
         self._wall_ns: list[int] = []
         self._cpu_ns: list[int] = []
-        self._stages: list[dict[str, int]] = []
+        self._stages: list[dict[str, int]] = []  # of each step, by stage [ns]
+        self._marked_ns = 0
         self._tracked = 0
         self._rss_bytes = 0
 
     def add(self, tracker: Tracker, sets: Iterable[FrameSet]) -> None:
-        clock = StageClock()
-        tracker.probe = clock.mark
+        tracker.probe = self._mark
         for one in sets:
+            self._stages.append({})
             cpu_ns = time.process_time_ns()
-            start_ns = time.perf_counter_ns()
-            clock.start()
+            start_ns = self._marked_ns = time.perf_counter_ns()
             track = tracker.step(one, self._shape)
-            clock.mark(REST)
-            self._wall_ns.append(time.perf_counter_ns() - start_ns)
+            self._mark(REST)
+            self._wall_ns.append(self._marked_ns - start_ns)
             self._cpu_ns.append(time.process_time_ns() - cpu_ns)
-            self._stages.append(clock.stages_ns())
             self._shape = track.shape
             self._tracked += track.body.pose is not None
         self._rss_bytes = max(self._rss_bytes, psutil.Process().memory_info().rss)
+
+    def _mark(self, stage: str) -> None:
+        """End a stage, which began at the end of the one before."""
+        stages, now_ns = self._stages[-1], time.perf_counter_ns()
+        stages[stage] = stages.get(stage, 0) + now_ns - self._marked_ns
+        self._marked_ns = now_ns
 
     def figures(self) -> StepFigures:
         n = len(self._wall_ns)
