@@ -50,7 +50,6 @@ def failures() -> list[PlannedSession]:
 
 
 def first_scene() -> Scenario:
-    """The first of the rooms."""
     return load_scenario(asset_path("scenarios") / f"{SCENES[0]}.toml")
 
 

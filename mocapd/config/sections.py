@@ -70,7 +70,6 @@ class CameraSection:
 
     @property
     def rate_hz(self) -> float:
-        """The requested rate."""
         return USUAL_RATE_HZ if self.fps_hz is None else self.fps_hz
 
 

@@ -23,7 +23,6 @@ class LastTrouble(logging.Handler):
         logging.getLogger("mocapd").removeHandler(self)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Stores one record."""
         text = record.getMessage()[:_LONGEST]
         self._newest = Trouble(record.created, record.levelname.lower(), text)
 

@@ -123,8 +123,6 @@ class PreparationFacts:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """All facts."""
-
     config: ConfigFacts
     daemons: tuple[StatusReport, ...]
     user: UserFacts

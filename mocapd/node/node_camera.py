@@ -109,7 +109,6 @@ class NodeCamera:
 
     @property
     def state(self) -> CameraState:
-        """The state for the wire."""
         status = self._capture.status()
         return CameraState(
             node=self._node,

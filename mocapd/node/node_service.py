@@ -132,7 +132,6 @@ class CameraNode:
         self._over.set()
 
     def states(self) -> tuple[CameraState, ...]:
-        """The state of each camera."""
         return tuple(camera.state for camera in self.cameras)
 
     def addresses(self) -> tuple[str, ...]:

@@ -174,12 +174,10 @@ OUTPUTS: Mapping[str, OutputEntry] = MappingProxyType(
 
 
 def output_sections() -> dict[str, Callable[[], OutputSection]]:
-    """The section of each output by its name."""
     return {name: entry.section for name, entry in OUTPUTS.items()}
 
 
 def default_sections() -> Mapping[str, OutputSection]:
-    """Every output with its defaults."""
     return {name: entry.section() for name, entry in OUTPUTS.items()}
 
 
@@ -219,7 +217,6 @@ def unsafe_outputs(sections: Mapping[str, OutputSection]) -> list[str]:
 
 
 def zenoh_section(sections: Mapping[str, OutputSection]) -> ZenohSection:
-    """The Zenoh section, for clients."""
     section = sections["zenoh"]
     assert isinstance(section, ZenohSection)
     return section

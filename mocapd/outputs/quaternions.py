@@ -21,7 +21,6 @@ def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def inverse(q: Quaternion) -> Quaternion:
-    """The inverse rotation."""
     return (-q[0], -q[1], -q[2], q[3])
 
 
@@ -31,7 +30,6 @@ def canonical(q: Quaternion) -> Quaternion:
 
 
 def rotate(q: Quaternion, v: Vector) -> Vector:
-    """The rotated vector."""
     x, y, z, w = q
     tx, ty, tz = (
         2.0 * (y * v[2] - z * v[1]),

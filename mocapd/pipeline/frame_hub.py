@@ -31,7 +31,6 @@ class FrameHub:
         self._onwards: tuple[TakesFrames, ...] = onwards
 
     def put(self, frame: Frame) -> None:
-        """Add a frame."""
         with self._lock:
             self._newest[frame.camera] = frame
             onwards = self._onwards

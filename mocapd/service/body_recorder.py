@@ -69,7 +69,6 @@ class BodyRecorder:
 
     @property
     def path(self) -> Path:
-        """The file."""
         return self._writer.path
 
     @property

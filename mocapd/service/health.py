@@ -95,7 +95,6 @@ def camera_message(
     metrics: CameraMetrics,
     mounting: Mounting,
 ) -> CameraStatus:
-    """The status of one camera."""
     return CameraStatus(
         instance=instance,
         camera=status.camera,

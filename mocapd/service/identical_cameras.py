@@ -64,7 +64,6 @@ class IdenticalCameras:
         return self._webcams[camera].trust if camera in self._webcams else Trust.KNOWN
 
     def losses(self, camera: str) -> int:
-        """The number of losses."""
         return self._webcams[camera].losses if camera in self._webcams else 0
 
     def notice(self, camera: str) -> str:

@@ -65,8 +65,6 @@ class RecordingRow(msgspec.Struct, frozen=True):
 
 
 class NowRecording(msgspec.Struct, frozen=True):
-    """The recording in progress."""
-
     id: str
     length_s: float
     frames: int

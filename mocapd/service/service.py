@@ -112,17 +112,14 @@ class Service:
 
     @property
     def config(self) -> Config:
-        """The running session's configuration."""
         return self._running.config
 
     @property
     def session(self) -> Session:
-        """The running session."""
         return self._running.session
 
     @property
     def hub(self) -> FrameHub:
-        """The hub of its cameras' frames."""
         return self._running.hub
 
     @property

@@ -298,6 +298,5 @@ def camera_renderers(world: World, samples: int = 3) -> list[CameraRenderer]:
 
 
 def figure_of(world: World) -> Figure:
-    """The person of a world."""
     scenario = world.scenario
     return build_figure(world.shape, scenario.clothes, scenario.seed, whole=scenario.body.whole)

@@ -129,7 +129,6 @@ class _Routes:
         return await answer(start)
 
     async def metrics(self, _request: Request) -> Response:
-        """The metrics for Prometheus."""
         # imported here: it takes a tenth of a second, and few users need it
         from mocapd.web.metrics_text import MEDIA_TYPE, metrics_text
 

@@ -33,13 +33,10 @@ class RecordingRequest(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class RecordingRoutes:
-    """Of one host."""
-
     def __init__(self, host: Host) -> None:
         self._host = host
 
     def routes(self) -> list[Route]:
-        """All of them."""
         return [
             Route("/recordings", self._list),
             Route("/recordings", self._do, methods=["POST"]),

@@ -121,8 +121,6 @@ LENS: Verbs = {
 
 
 class Method(Command, frozen=True):
-    """The method of the extrinsics."""
-
     refused = "there is no such method"
     fix = "take board or wearer"
     method: Literal["board", "wearer"] = "board"

@@ -100,7 +100,6 @@ class Notifier:
         return 0 < self._watchdog_ns <= _FEEDS * (monotonic_ns() - self._fed_ns)
 
     def heartbeat(self) -> None:
-        """Sends a heartbeat."""
         if self._try_send("WATCHDOG=1"):
             self._fed_ns = monotonic_ns()
 

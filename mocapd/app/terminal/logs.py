@@ -35,7 +35,6 @@ class StderrHandler(logging.StreamHandler[TextIO]):
     """Writes to the current sys.stderr: above a progress bar or status line, if any."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """One record."""
         self.stream = sys.stderr
         super().emit(record)
 

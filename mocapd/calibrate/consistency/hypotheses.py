@@ -22,7 +22,6 @@ _MOST_PERMUTED = 4  # cameras, of which all orders are tried
 
 
 def identity_view(view: PersonView) -> PersonView:
-    """Identity: a correct view."""
     return view
 
 

@@ -130,7 +130,6 @@ class Done(msgspec.Struct, frozen=True):
 
 
 def encode(message: msgspec.Struct) -> bytes:
-    """Encodes a message."""
     return msgspec.msgpack.encode(message)
 
 

@@ -61,7 +61,6 @@ class SocketCamera:
             self.torn += 1
 
     def close(self) -> None:
-        """Closes the webcam."""
         self._closed.set()
         socket, camera = self._found, self._camera
         self._found = self._camera = None

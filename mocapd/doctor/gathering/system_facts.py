@@ -53,7 +53,6 @@ def processor_facts(sysfs: Path = SYSFS) -> ProcessorFacts:
 
 
 def clock_facts() -> ClockFacts:
-    """Facts of the wall clock."""
     built = Path(mocapd.__file__).stat().st_mtime
     return ClockFacts(time.time(), built, _is_synchronised())
 

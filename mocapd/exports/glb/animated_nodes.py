@@ -14,7 +14,6 @@ from mocapd.types import Floats
 
 
 def skeleton_nodes(motion: SampledMotion) -> list[dict[str, Any]]:
-    """One node for each joint."""
     skeleton, offsets_m = motion.skeleton, motion.offsets_m
     children = [np.flatnonzero(skeleton.parents == j).tolist() for j in range(len(skeleton.names))]
     return [

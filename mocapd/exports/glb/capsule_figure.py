@@ -39,7 +39,6 @@ class CapsuleFigure:
 
 
 def capsule_figure(skeleton: Skeleton) -> CapsuleFigure:
-    """The figure of this skeleton."""
     places: list[Floats] = []
     normals: list[Floats] = []
     joints: list[Ints] = []

@@ -50,7 +50,6 @@ def unity_euler_deg(world_xyzw: Quaternion, half_turn: tuple[float, float]) -> V
 
 
 def cos_sin(angle_rad: float) -> tuple[float, float]:
-    """Cosine and sine of an angle."""
     return math.cos(angle_rad), math.sin(angle_rad)
 
 

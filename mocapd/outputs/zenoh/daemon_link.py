@@ -52,17 +52,14 @@ class Link:
 
     @property
     def key(self) -> str:
-        """The key of the frames."""
         return keys.skeleton(self.instance_chunk, self.person)
 
     @property
     def health_key(self) -> str:
-        """The key of the health messages."""
         return keys.health(self.instance_chunk)
 
     @property
     def rest_key(self) -> str:
-        """The key of the rest skeleton."""
         return keys.rest_skeleton(self.instance_chunk, self.person)
 
 

@@ -30,7 +30,6 @@ class CameraSilhouette:
         self.reset()
 
     def reset(self) -> None:
-        """Reset the background."""
         self.background.reset()
         self._before = np.zeros(self.picture.bgr.shape[:2], np.uint8)
         self._body = np.zeros_like(self._before)  # where no background is learned
@@ -111,7 +110,6 @@ class RigSilhouettes:
         self.cameras: list[Camera] = []
 
     def reset(self) -> None:
-        """Reset the backgrounds."""
         for one in self._every:
             one.reset()
 

@@ -104,7 +104,6 @@ class Wang2011Tracker:
             self._tracking.reset(near.t_ns)
 
     def step(self, frames: FrameSet, shape: BodyShape) -> Track:
-        """Track one frame set."""
         require_stature(shape, self._model.stature_m)
         sights: dict[str, Sight] = {}
         for name, segmenter in self._segmenters.items():

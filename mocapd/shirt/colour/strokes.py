@@ -52,7 +52,6 @@ def _is_png(path: Path) -> bool:
 
 
 def strokes_path(picture: Path) -> Path:
-    """Path of the strokes of a picture."""
     return picture.with_name(f"{picture.stem}{_STROKES}.png")
 
 

@@ -38,7 +38,6 @@ class Motion:
 
 
 def compile_motion(scenario: Scenario, skeleton: Skeleton) -> Motion:
-    """The scenario's motion for this skeleton."""
     keys = scenario.motion.keyframes
     times = np.array([key.t_s for key in keys])
     local = np.stack([local_rotvecs(key).ravel() for key in keys])

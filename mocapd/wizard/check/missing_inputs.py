@@ -7,7 +7,6 @@ from mocapd.wizard.draft import Draft
 
 
 def missing_inputs(draft: Draft) -> Iterator[Problem]:
-    """The missing inputs of the tracker."""
     if draft.rig is None:
         yield Problem("where the cameras stand is not known", "room", "do the step Room first")
     elif draft.has_shirt and not draft.colours:

@@ -53,7 +53,6 @@ class UsualPenalties:
 
     @classmethod
     def initial(cls, n_cameras: int, params: LimbScoreParams) -> "UsualPenalties":
-        """The initial state."""
         return cls(np.tile(params.usual, (n_cameras, 1)), np.zeros((n_cameras, 2)))
 
 

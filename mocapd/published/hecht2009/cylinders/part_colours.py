@@ -27,7 +27,6 @@ class AppearanceModel:
 
     @classmethod
     def initial(cls, n_views: int, n_parts: int) -> "AppearanceModel":
-        """The initial state."""
         return cls(
             np.zeros((n_views, n_parts, RINGS, 3), np.float32), np.zeros((n_views, n_parts, RINGS))
         )
