@@ -1,20 +1,10 @@
 """Removed keys of earlier versions, with advice for each."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 
 def _each(prefix: str, names: str, advice: str) -> Mapping[str, str]:
     return {f"{prefix}.{name}": advice for name in names.split()}
-
-
-def _predictions(outputs: Iterable[str]) -> Mapping[str, str]:
-    advice = {}
-    for name in outputs:
-        advice[f"{name}.predict_hz"] = "all outputs share it: write hz = ... under [prediction]"
-        advice[f"{name}.predict_ahead_ms"] = (
-            "all outputs share it: write ahead_ms = ... under [prediction]"
-        )
-    return advice
 
 
 _STUDY = "it served studies only, which lab/compared/ablations.py now does: leave it out"
@@ -43,5 +33,9 @@ REMOVED: Mapping[str, str] = {
         "period_s slack_periods longest_wait_periods hysteresis_periods patience",
         "write how long a picture may be late in seconds: wait_s = ... under [bundler]",
     ),
-    **_predictions(("zenoh", "osc", "vmc", "vrchat")),
+    **{
+        f"{output}.predict_{name}": f"all outputs share it: write {name} = ... under [prediction]"
+        for output in ("zenoh", "osc", "vmc", "vrchat")
+        for name in ("hz", "ahead_ms")
+    },
 }
