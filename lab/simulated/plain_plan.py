@@ -5,7 +5,6 @@ of legs or of turning, the rest are spread over all others.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import cycle
 
 import msgspec
@@ -19,17 +18,18 @@ from lab.simulated.session_plan import (
     SECONDS,
     STAND_S,
     PlannedSession,
+    RigPlan,
     is_wide,
+    planned_cameras,
 )
 from lab.simulated.variation import (
     Variation,
-    stereo_pair,
     varied_body,
     varied_clothes,
     varied_lights,
 )
 from mocapd.sim.person_spec import Bystander, MotionSpec, PoseKeyframe
-from mocapd.sim.scenario import CameraSpec, Scenario, Thing
+from mocapd.sim.scenario import Scenario, Thing
 
 PLAIN_SESSIONS = 20
 MOST_WAY_M = 2.2
@@ -50,27 +50,15 @@ _LEG_WORDS = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class PlainRig:
-    """azimuths_deg: about the person, 0 is in front of it; of a stereo pair, 12 cm apart, the middle's."""
-
-    name: str
-    azimuths_deg: tuple[float, ...]
-    distance_m: float
-    height_m: float = 1.35
-    stereo: bool = False
-    outdoors_or_hall: bool = False
-
-
 PLAIN_RIGS = (
-    PlainRig("stereo", (0.0,), 3.2, stereo=True),
-    PlainRig("pair", (-35.0, 38.0), 3.2),
-    PlainRig("stereo", (18.0,), 3.3, 1.2, stereo=True),
-    PlainRig("around", (-40.0, 50.0, 140.0, 225.0), 3.5, 1.7, outdoors_or_hall=True),
-    PlainRig("stereo", (-12.0,), 3.0, 1.5, stereo=True),
-    PlainRig("pair", (-20.0, 30.0), 3.3),
-    PlainRig("stereo", (6.0,), 3.4, stereo=True, outdoors_or_hall=True),
-    PlainRig("three", (-45.0, 0.0, 42.0), 3.1),
+    RigPlan("stereo", (0.0,), 3.2, 1.35, stereo=True),
+    RigPlan("pair", (-35.0, 38.0), 3.2, 1.35),
+    RigPlan("stereo", (18.0,), 3.3, 1.2, stereo=True),
+    RigPlan("around", (-40.0, 50.0, 140.0, 225.0), 3.5, 1.7, outdoors_or_hall=True),
+    RigPlan("stereo", (-12.0,), 3.0, 1.5, stereo=True),
+    RigPlan("pair", (-20.0, 30.0), 3.3, 1.35),
+    RigPlan("stereo", (6.0,), 3.4, 1.35, outdoors_or_hall=True, stereo=True),
+    RigPlan("three", (-45.0, 0.0, 42.0), 3.1, 1.35),
 )
 _YAWS_DEG = (
     0.0,
@@ -128,7 +116,7 @@ def _spread(usable: list[tuple[MotionClip, int]], most: int) -> list[tuple[Motio
 
 
 def plain_scenario(
-    name: str, number: int, scene: Scenario, rig: PlainRig, where: Placement
+    name: str, number: int, scene: Scenario, rig: RigPlan, where: Placement
 ) -> Scenario:
     """The scene with another body in plain clothes, other cameras and lights; number: of the variation."""
     vary = Variation(np.random.default_rng([2027, number]))
@@ -145,7 +133,7 @@ def plain_scenario(
         loop_s=SECONDS,
         scribble_s=0.2,
         person_appears_s=EMPTY_S,
-        cameras=_cameras(scene.cameras[0], rig, vary),
+        cameras=planned_cameras(scene, rig, vary, _LOOK_AT_M),
         body=body,
         clothes=varied_clothes(vary, number),
         lights=varied_lights(scene, vary, LAMP_OFF_S if number % 4 == 3 else None),
@@ -155,24 +143,6 @@ def plain_scenario(
             scene.room, things=(*scene.room.things, *_portrait(scene, number))
         ),
     )
-
-
-def _cameras(seen: CameraSpec, rig: PlainRig, vary: Variation) -> list[CameraSpec]:
-    """Like the scene's first camera, at other places; a stereo pair is rigid and exposes together."""
-    out = []
-    for k, azimuth_deg in enumerate(rig.azimuths_deg):
-        azimuth_rad, away_m = np.radians(azimuth_deg), rig.distance_m * vary(0.03)
-        camera = msgspec.structs.replace(
-            seen, name=f"cam{k}",
-            position_m=(
-                float(away_m * np.sin(azimuth_rad)), rig.height_m * vary(0.05), float(away_m * np.cos(azimuth_rad)),
-            ),
-            look_at_m=_LOOK_AT_M, roll_deg=float(vary.rng.normal(0.0, 1.0)), focal_px=None, centre_px=None,
-            fov_deg=float(vary.rng.uniform(56.0, 64.0)), dropped=0.0, gain=seen.gain * vary(0.05),
-            clock_offset_s=0.0 if k == 0 else float(vary.rng.uniform(0.0, 0.016)),
-        )  # fmt: skip
-        out.append(camera)
-    return stereo_pair(out[0]) if rig.stereo else out
 
 
 def _walks_behind(vary: Variation, number: int) -> Bystander:

@@ -7,13 +7,14 @@ from collections.abc import Sequence
 from itertools import cycle
 
 from lab.simulated.motion_clip import MotionClip, Placement, within
-from lab.simulated.plain_plan import MOST_WAY_M, PlainRig, plain_scenario
+from lab.simulated.plain_plan import MOST_WAY_M, plain_scenario
 from lab.simulated.session_plan import (
     BLEND_S,
     EMPTY_S,
     SECONDS,
     STAND_S,
     PlannedSession,
+    RigPlan,
     is_wide,
 )
 from mocapd.sim.scenario import Scenario
@@ -21,8 +22,8 @@ from mocapd.sim.scenario import Scenario
 RING_SESSIONS = 12
 _FIRST_NUMBER = 100  # of the variations, after those of the other plan
 _RIGS = (
-    PlainRig("ring3", (-60.0, 55.0, 175.0), 3.4, 1.6),
-    PlainRig("ring4", (-40.0, 50.0, 140.0, 225.0), 3.5, 1.7),
+    RigPlan("ring3", (-60.0, 55.0, 175.0), 3.4, 1.6),
+    RigPlan("ring4", (-40.0, 50.0, 140.0, 225.0), 3.5, 1.7),
 )
 # of motion, in the names of the public collections of clips: two clips of each are taken
 _WORDS = ("kick", "squat", "deposit", "jog", "elbowtoknee", "jumping", "soccer", "throw")

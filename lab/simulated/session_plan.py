@@ -11,9 +11,10 @@ import msgspec
 import numpy as np
 
 from lab.simulated.motion_clip import MotionClip, Placement, within
-from lab.simulated.variation import Variation, varied_body, varied_lights
+from lab.simulated.variation import Variation, stereo_pair, varied_body, varied_lights
 from mocapd.sim.person_spec import MotionSpec, PoseKeyframe
-from mocapd.sim.scenario import Scenario
+from mocapd.sim.scenario import CameraSpec, Scenario
+from mocapd.sim.scenario_values import Vec3
 
 SESSIONS = 24
 SECONDS = 7.0
@@ -25,13 +26,15 @@ _LOOK_AT_M = (0.0, 1.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class RigPlan:
-    """Where the cameras stand. azimuths_deg: about the person, 0 is in front of it; from how far, how high."""
+    """Where the cameras stand. azimuths_deg: about the person, 0 is in front of it; of a stereo pair, 12 cm apart, the
+    middle's; from how far, how high."""
 
     name: str
     azimuths_deg: tuple[float, ...]
     distance_m: float = 2.8
     height_m: float = 1.4
     outdoors_or_hall: bool = False  # too wide for a living room
+    stereo: bool = False
 
 
 RIGS = (
@@ -99,27 +102,30 @@ def is_wide(scene: Scenario) -> bool:
     return scene.room.outdoors or min(scene.room.size_m[::2]) > 8.0
 
 
+def planned_cameras(
+    scene: Scenario, rig: RigPlan, vary: Variation, look_at_m: Vec3
+) -> list[CameraSpec]:
+    """Like the scene's first camera, at other places; a stereo pair is rigid and exposes together."""
+    seen, out = scene.cameras[0], list[CameraSpec]()
+    for k, azimuth_deg in enumerate(rig.azimuths_deg):
+        azimuth_rad, away_m = np.radians(azimuth_deg), rig.distance_m * vary(0.03)
+        camera = msgspec.structs.replace(
+            seen, name=f"cam{k}",
+            position_m=(
+                float(away_m * np.sin(azimuth_rad)), rig.height_m * vary(0.05), float(away_m * np.cos(azimuth_rad)),
+            ),
+            look_at_m=look_at_m, roll_deg=float(vary.rng.normal(0.0, 1.0)), focal_px=None, centre_px=None,
+            fov_deg=float(vary.rng.uniform(56.0, 64.0)), dropped=0.0, gain=seen.gain * vary(0.05),
+            clock_offset_s=0.0 if k == 0 else float(vary.rng.uniform(0.0, 0.016)),
+        )  # fmt: skip
+        out.append(camera)
+    return stereo_pair(out[0]) if rig.stereo else out
+
+
 def _scenario(name: str, number: int, scene: Scenario, rig: RigPlan, where: Placement) -> Scenario:
     rng = np.random.default_rng([2026, number])
     vary = Variation(rng)
-    body = varied_body(vary)
-    seen = scene.cameras[0]
-    cameras = []
-    for k, azimuth_deg in enumerate(rig.azimuths_deg):
-        azimuth_rad = np.radians(azimuth_deg)
-        away_m = rig.distance_m * vary(0.03)
-        place = (
-            float(away_m * np.sin(azimuth_rad)),
-            rig.height_m * vary(0.05),
-            float(away_m * np.cos(azimuth_rad)),
-        )
-        cameras.append(
-            msgspec.structs.replace(
-                seen, name=f"cam{k}", position_m=place, look_at_m=_LOOK_AT_M, roll_deg=float(rng.normal(0.0, 1.0)),
-                focal_px=None, centre_px=None, fov_deg=float(rng.uniform(56.0, 64.0)), dropped=0.0,
-                gain=seen.gain * vary(0.05), clock_offset_s=0.0 if k == 0 else float(rng.uniform(0.0, 0.016)),
-            )
-        )  # fmt: skip
+    body, cameras = varied_body(vary), planned_cameras(scene, rig, vary, _LOOK_AT_M)
     lights = varied_lights(scene, vary, LAMP_OFF_S if number % 3 == 1 else None)
     clothes = msgspec.structs.replace(scene.clothes, dye_variation=0.03 + 0.02 * rng.uniform())
     stance = PoseKeyframe(t_s=0.0, pose="t_pose", yaw_deg=where.yaw_deg)
