@@ -21,6 +21,20 @@ _KIND_OF = {
 
 
 @dataclass(frozen=True, slots=True)
+class Carrier:
+    """cues: names of those that carry the body; shirt: it places trunk and arms; cameras: how many show the body."""
+
+    cues: str
+    shirt: bool
+    cameras: int
+
+    @property
+    def many(self) -> bool:
+        """Whether so many show it that the filter follows closely."""
+        return self.cameras >= _MANY
+
+
+@dataclass(frozen=True, slots=True)
 class BoneGains:
     """How the filter gain of a bone depends on joint confidence."""
 
@@ -44,7 +58,7 @@ _CLOTHES = {
     "shank": BoneGains(1.6, 0.15, 0.3, 8.5),
 }
 # three cameras and more tremble a third as much as two: what they find is published nearly as it is, with less lag
-MANY = 3
+_MANY = 3
 MANY_NOISE = 0.5
 _CLOTHES_OF_MANY = {
     kind: replace(
@@ -86,7 +100,7 @@ SHIRT_TRUNK_BONES = np.array(
 
 @cache
 def gains_of(by_shirt: bool, by_many: bool) -> tuple[Floats, Floats]:
-    """Gains (8,J) of each bone for `follow_bones`, and (J,) its trust_s. by_many: cameras show the body."""
+    """Gains (8,J) of each bone for `follow_bones`, and (J,) its trust_s. See `Carrier`."""
     rows, of_clothes = [], _CLOTHES_OF_MANY if by_many else _CLOTHES
     for j, kind in enumerate(_KIND_OF_BONE):
         gains = of_clothes[kind]

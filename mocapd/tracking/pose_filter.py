@@ -23,9 +23,9 @@ from mocapd.geometry import rotations
 from mocapd.tracking.bone_gains import (
     END_OF_BONE,
     LOWER,
-    MANY,
     MANY_NOISE,
     SHIRT_TRUNK_BONES,
+    Carrier,
     gains_of,
 )
 from mocapd.tracking.pose_filter_kernels import follow_bones, moving_share
@@ -36,20 +36,6 @@ _RESET_AFTER_S = 0.5  # a longer gap resets the filter
 _SHORTEST_TICKS = 0.1  # least time step, also between frames of equal time
 _LEAST_STEP_M = 0.01  # of a joint in a frame, however short
 _HALVINGS = 10  # bisection steps: resolves a step of a metre to a millimetre
-
-
-@dataclass(frozen=True, slots=True)
-class Carrier:
-    """cues: names of those that carry the body; shirt: it places trunk and arms; cameras: how many show the body."""
-
-    cues: str
-    shirt: bool
-    cameras: int
-
-    @property
-    def many(self) -> bool:
-        """See `MANY`."""
-        return self.cameras >= MANY
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.geometry import rotations
 from mocapd.tracking.base import Track
+from mocapd.tracking.bone_gains import Carrier
 from mocapd.tracking.cues.clothes.clothes_cue import ClothesCue
 from mocapd.tracking.cues.clothes.clothes_solver import ClothesEstimate
 from mocapd.tracking.cues.shirt.shirt_cue import ShirtCue, ShirtEstimate
@@ -25,7 +26,7 @@ from mocapd.tracking.joint_confidence import (
     keypoint_agreement,
     shirt_confidence,
 )
-from mocapd.tracking.pose_filter import Carrier, PoseFilter
+from mocapd.tracking.pose_filter import PoseFilter
 from mocapd.tracking.track_state import TrackState, upper_body_state
 from mocapd.tracking.tracking_state import confidence_fade, grow_uncertainty
 from mocapd.tracking.trunk_and_legs import LOWER_BONES

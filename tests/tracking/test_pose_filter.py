@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from mocapd.body.skeleton import INDEX, N_JOINTS, joint_positions, standard_skeleton
 from mocapd.geometry import rotations
-from mocapd.tracking.pose_filter import Carrier, PoseFilter, PoseFilterParams
+from mocapd.tracking.bone_gains import Carrier
+from mocapd.tracking.pose_filter import PoseFilter, PoseFilterParams
 from mocapd.tracking.pose_filter_kernels import follow_bones
 from mocapd.types import Floats, Pose
 from tests.tracking import naive_pose_filter

@@ -27,7 +27,7 @@ class ShirtLocator:
     def reset(self) -> None:
         """Forgets the separate track."""
         self._next_attempt_ns = 0
-        self._missing_ns: int | None = None  # since when, while no body was found by it
+        self._missing_ns: int | None = None  # since the first attempt that failed
         self.has_searched = False  # in the last frame set
         self.separate_track: TrackState | None = None
         self.separate_since_ns = 0
@@ -59,7 +59,9 @@ class ShirtLocator:
             self.has_searched = False
             return None
         else:
-            pause_s = self._pause_s(t_ns)
+            if self._missing_ns is None:
+                self._missing_ns = t_ns
+            pause_s = self._pause_s(seconds(t_ns - self._missing_ns))
             self._next_attempt_ns = t_ns + nanoseconds(pause_s)
             found = cue.start_from(predicted, state.taught_s, present, frame_index)
             if found is None and cue.is_search_due(t_ns):
@@ -73,15 +75,11 @@ class ShirtLocator:
             self._update_separate_track(found, predicted, wearer, t_ns)
         return found
 
-    def _pause_s(self, t_ns: int) -> float:
-        """Until the next attempt, after one at t_ns: who has worn no shirt for long hardly puts one on."""
+    def _pause_s(self, missing_s: float) -> float:
+        """Until the next attempt: who has worn no shirt for long hardly puts one on."""
         p = self._params
-        if self._missing_ns is None:
-            self._missing_ns = t_ns
-        missing_s = seconds(t_ns - self._missing_ns)
-        return float(
-            np.clip(p.covered_share * missing_s, p.covered_pause_s, p.most_covered_pause_s)
-        )
+        pause_s = max(p.covered_share * missing_s, p.covered_pause_s)
+        return min(pause_s, p.most_covered_pause_s)
 
     def search(
         self, wearer: BodyShapeEstimate, present: dict[int, float], t_ns: int, frame_index: int
