@@ -32,9 +32,8 @@ class Motion:
     swings: tuple[tuple[int, Floats, float, float, float], ...]  # joint, vector, Hz, from, to
     sway: Floats  # (3, 4): cycles per loop, phase [rad], amplitude about x and z [rad]
     feet: tuple[FootTrack, FootTrack]  # left, right
-    lifted: (
-        MonotoneCubic | None
-    )  # (2*4,) per foot: how far it is off the floor, 0..1, and where [m]
+    # (2*4,) per foot: how far it is off the floor, 0..1, and where [m]
+    lifted: MonotoneCubic | None
 
 
 def compile_motion(scenario: Scenario, skeleton: Skeleton) -> Motion:
