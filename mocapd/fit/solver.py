@@ -137,6 +137,13 @@ class Fitter:
             a @ b > least * np.sqrt((a @ a) * (b @ b)) for a, b in combinations(rays, 2)
         )
 
+    def common_line_of_sight(self, state: MotionState, views: Sequence[View]) -> Floats | None:
+        """The mean direction (3,) from these cameras to the body, a unit vector; None if they see it from several sides."""
+        if not self.has_small_baseline(state, views):
+            return None
+        ray = np.sum([state.root_m + self._from_eyes_m[view.index] for view in views], axis=0)
+        return np.asarray(ray / np.linalg.norm(ray))
+
     def line_of_sight(self, state: MotionState, cameras: Collection[int]) -> Floats | None:
         """The unit vector (3,) to the body from the only one of these cameras; None of several, which tell its depth."""
         if len(cameras) != 1:

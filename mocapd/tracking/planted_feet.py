@@ -1,4 +1,8 @@
-"""Detects planted feet: a foot that has stayed in one place on the floor for a while is fixed there."""
+"""Detects planted feet: a foot that has stayed in one place on the floor for a while is fixed there.
+
+Cameras that look from one side hardly tell how far away a foot is: found anew in each frame set, a foot that stands wanders
+by several centimetres along their line of sight, and little across it. There it may, and its place is a mean over longer.
+"""
 
 from dataclasses import dataclass
 
@@ -19,12 +23,15 @@ class PlantedFeetParams:
 
     Planted: ankle and toes have stayed within near_m of their mean place, and within low_m of their height in the
     T-pose, for still_s. The place follows them with time constant follows_s. Lifted: one of them is farther than
-    far_m from the place or higher than high_m.
+    far_m from the place or higher than high_m. Before cameras that look from one side: for still_from_one_side_s, and along
+    their line of sight distances count as deep times less.
     """
 
     near_m: float = 0.025
     low_m: float = 0.03
     still_s: float = 0.3
+    still_from_one_side_s: float = 0.9
+    deep: float = 3.0
     follows_s: float = 3.0
     far_m: float = 0.05
     high_m: float = 0.06
@@ -44,6 +51,7 @@ class PlantedFeet:
         self._t_ns: int | None = None
         self._mean_m = np.zeros((2, 2, 2))  # of each foot's joints, along x and z
         self._still_s = np.zeros(2)  # for how long each foot has been there
+        self._planted_from_s = self._params.still_s
 
     def expire(self, t_ns: int) -> None:
         """Forgets all feet where the last fit is too old at t_ns: the next body is another one, or stands elsewhere."""
@@ -64,17 +72,23 @@ class PlantedFeet:
 
     @property
     def _is_planted(self) -> NDArray[np.bool_]:
-        return np.asarray(self._still_s >= self._params.still_s)
+        return np.asarray(self._still_s >= self._planted_from_s)
 
-    def update(self, joints_m: Floats, t_ns: int) -> None:
-        """Updates both feet from the joints (J,3) [m] of a new fit."""
+    def update(self, joints_m: Floats, t_ns: int, sight: Floats | None = None) -> None:
+        """Updates both feet from the joints (J,3) [m] of a new fit. sight (3,): the line of sight of cameras that look from
+        one side."""
         self.expire(t_ns)
         p = self._params
+        self._planted_from_s = p.still_s if sight is None else p.still_from_one_side_s
         dt_s = 0.0 if self._t_ns is None else seconds(t_ns - self._t_ns)
         self._t_ns = t_ns
         feet_m = joints_m[_FEET]
         place_m, height_m = feet_m[..., [0, 2]], feet_m[..., 1] - self._rest_height_m
-        away_m = np.linalg.norm(place_m - self._mean_m, axis=-1).max(axis=1)
+        way_m = place_m - self._mean_m
+        if sight is not None:
+            level = sight[[0, 2]] / max(float(np.linalg.norm(sight[[0, 2]])), 1e-6)
+            way_m -= (1.0 - 1.0 / p.deep) * (way_m @ level)[..., None] * level
+        away_m = np.linalg.norm(way_m, axis=-1).max(axis=1)
         planted = self._is_planted
         stays = np.where(planted, away_m <= p.far_m, away_m <= p.near_m)
         stays &= np.where(

@@ -99,3 +99,25 @@ def test_a_planted_foot_holds_the_leg_but_not_against_what_is_far_away() -> None
 
     assert off_after_m(0.01) < 0.002
     assert off_after_m(0.5) > 0.4
+
+
+@RATES
+def test_before_cameras_from_one_side_a_foot_that_stands_may_wander_along_their_line_of_sight(
+    hz: float,
+) -> None:
+    sight = np.array([0.0, -0.5, -1.0])
+    along, across = (
+        wandering_feet(axis, hz, sight) for axis in (np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0]))
+    )  # fmt: skip
+    assert sorted(along.joints) == sorted(LEFT + RIGHT)
+    assert along.places_m == pytest.approx(BODY.rest_m[along.joints][:, [0, 2]], abs=0.02)
+    assert len(across.joints) == 0
+
+
+def wandering_feet(axis: Floats, hz: float, sight: Floats) -> PlantedFeet:
+    """Feet of somebody who stands for 3 s, found up to 5 cm away along an axis."""
+    feet = PlantedFeet(BODY.rest_m, PlantedFeetParams())
+    for frame in range(round(3.0 * hz)):
+        off_m = 0.05 * np.sin(9.0 * frame / hz) * axis
+        feet.update(BODY.rest_m + off_m, nanoseconds(frame / hz), sight)
+    return feet

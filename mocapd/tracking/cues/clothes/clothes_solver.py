@@ -297,7 +297,8 @@ class ClothesSolver:
             velocity = self._velocity(fit, scored.views, last, dt_s, changed)
         joints_m, _ = self.fitter.joints(fit.state)
         if t_ns is not None:
-            self._feet.update(joints_m, t_ns)
+            sight = self.fitter.common_line_of_sight(fit.state, scored.views)
+            self._feet.update(joints_m, t_ns, sight)
         motion, views = replace(fit.state, velocity=velocity), tuple(scored.views)
         off_keypoints_m = keypoints[0].off_keypoints_m(joints_m) if keypoints else None
         return ClothesEstimate(
