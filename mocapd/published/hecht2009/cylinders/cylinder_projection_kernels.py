@@ -6,12 +6,10 @@ second and the fourth to the third. What a round end adds is left out.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mocapd.kernels.decorator import kernel
 from mocapd.published.hecht2009.cylinders.work_camera import WorkCamera
-
-Array = NDArray[np.float64]
+from mocapd.published.hecht2009.vector_kernels import Array, cross, dot, over
 
 NEAREST_M = 0.1  # depth of what is drawn at all
 # sine of the angle between the rays to both ends, below which the axis has no direction
@@ -23,7 +21,7 @@ def to_camera_frame(camera: WorkCamera, point: Array, out: Array) -> None:
     """A world point (3,) in the camera's frame, out (3,) [m]."""
     R, t, _, _, _ = camera
     for i in range(3):
-        out[i] = R[i, 0] * point[0] + R[i, 1] * point[1] + R[i, 2] * point[2] + t[i]
+        out[i] = dot(R[i], point) + t[i]
 
 
 @kernel(inline="always", error_model="numpy")
@@ -52,15 +50,11 @@ def project_frustum(
     if a[2] < NEAREST_M or b[2] < NEAREST_M:
         return False
     _, _, K, dist, far_r2 = camera
-    nx = a[1] * b[2] - a[2] * b[1]
-    ny = a[2] * b[0] - a[0] * b[2]
-    nz = a[0] * b[1] - a[1] * b[0]
-    size = np.sqrt(nx * nx + ny * ny + nz * nz)
-    if size < _ALONG_RAY * a[2] * b[2]:
+    n = cross(a, b)
+    if np.sqrt(dot(n, n)) < _ALONG_RAY * a[2] * b[2]:
         # the axis runs along the ray: any direction across it will do
-        nx, ny, nz = a[2], 0.0, -a[0]
-        size = np.sqrt(nx * nx + nz * nz)
-    nx, ny, nz = nx / size, ny / size, nz / size
+        n = (a[2], 0.0, -a[0])
+    n = over(n, np.sqrt(dot(n, n)))
     for k in range(4):
         first = k % 3 == 0
         p = a if first else b
@@ -68,7 +62,7 @@ def project_frustum(
         if k > 1:
             r = -r
         quad[k, 0], quad[k, 1] = pixel_at(
-            K, dist, far_r2, p[0] + r * nx, p[1] + r * ny, p[2] + r * nz
+            K, dist, far_r2, p[0] + r * n[0], p[1] + r * n[1], p[2] + r * n[2]
         )
     return True
 

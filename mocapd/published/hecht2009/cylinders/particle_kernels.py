@@ -12,8 +12,7 @@ from mocapd.published.hecht2009.cylinders.cylinder_projection_kernels import (
     to_camera_frame,
 )
 from mocapd.published.hecht2009.cylinders.work_camera import WorkCamera
-
-Array = NDArray[np.float64]
+from mocapd.published.hecht2009.vector_kernels import Array, dot, minus, move
 
 
 class NoiseDraws(NamedTuple):
@@ -63,21 +62,15 @@ def scatter(
     (V,3) with depth_sd (3,) [m], which `depth_share` of the particles do. A point is not moved behind its camera."""
     choice, view, spread, depth = draws
     n_views = centres.shape[0]
-    ray = np.empty(3)
     for n in range(points.shape[0]):
         if choice[n] < depth_share and n_views > 0:
             v = min(int(view[n] * n_views), n_views - 1)
             for i in range(3):
-                for a in range(3):
-                    ray[a] = points[n, i, a] - centres[v, a]
-                far = np.sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2])
-                if far < NEAREST_M:
-                    continue
-                f = max(depth_sd[i] * depth[n, i] / far, NEAREST_M / far - 1.0)
-                for a in range(3):
-                    points[n, i, a] += f * ray[a]
+                ray = minus(points[n, i], centres[v])
+                far = np.sqrt(dot(ray, ray))
+                if far >= NEAREST_M:
+                    f = max(depth_sd[i] * depth[n, i] / far, NEAREST_M / far - 1.0)
+                    move(points[n, i], f, ray)
         else:
             for i in range(3):
-                sd = np.sqrt(variance[n, i])
-                for a in range(3):
-                    points[n, i, a] += sd * spread[n, i, a]
+                move(points[n, i], np.sqrt(variance[n, i]), spread[n, i])

@@ -13,8 +13,8 @@ from mocapd.published.hecht2009.cylinders.cylinder_projection_kernels import (
 from mocapd.published.hecht2009.cylinders.occlusion_kernels import OcclusionModel, is_hidden
 from mocapd.published.hecht2009.cylinders.work_camera import WorkCamera
 from mocapd.published.hecht2009.edge_kernels import FULL
+from mocapd.published.hecht2009.vector_kernels import Array, dot, minus
 
-Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
 Singles = NDArray[np.float32]
 
@@ -44,12 +44,8 @@ def covers(q: Array, turn: float, x: float, y: float) -> bool:
 @kernel(error_model="numpy")
 def across_view(a: Array, b: Array) -> float:
     """Sine of the angle between the axis a b, points of the camera's frame (3,), and the ray to its middle."""
-    mm = dd = md = 0.0
-    for i in range(3):
-        m, d = a[i] + b[i], b[i] - a[i]
-        mm += m * m
-        dd += d * d
-        md += m * d
+    m, d = (a[0] + b[0], a[1] + b[1], a[2] + b[2]), minus(b, a)
+    mm, dd, md = dot(m, m), dot(d, d), dot(m, d)
     if mm * dd == 0.0:
         return 0.0
     sine: float = np.sqrt(max(1.0 - md * md / (mm * dd), 0.0))

@@ -10,11 +10,21 @@ from numpy.typing import NDArray
 from mocapd.fit.terms.collision_kernels import ALONG
 from mocapd.kernels.decorator import kernel
 from mocapd.published.hecht2009.mass_spring.angular_limits import Hinges, Swings
+from mocapd.published.hecht2009.vector_kernels import (
+    TINY,
+    Array,
+    Vector,
+    cross,
+    dot,
+    minus,
+    move,
+    over,
+    times,
+    unit,
+)
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_TINY = 1e-12
 _AFTER = (1, 2, 0, 1)  # the axis after each, and the one after that
 # the left, the right, as in `body_points`; numba takes tuples as constants
 _SHOULDERS, _WAIST, _HIPS = (2, 9), (5, 12), (6, 13)
@@ -43,54 +53,51 @@ def sweep_springs(
     for k in range(rows.shape[0]):
         s = rows[k]
         a, b = ends[s, 0], ends[s, 1]
-        dx = points[b, 0] - points[a, 0]
-        dy = points[b, 1] - points[a, 1]
-        dz = points[b, 2] - points[a, 2]
-        # no way apart is as good as any: downwards
-        now = np.sqrt(dx * dx + dy * dy + dz * dz)
-        if now < _TINY:
-            dy, now = -_TINY, _TINY
+        way = minus(points[b], points[a])
+        now = np.sqrt(dot(way, way))
+        if now < TINY:
+            # no way apart is as good as any: downwards
+            way, now = (way[0], -TINY, way[2]), TINY
         step = (lengths[s] - now - give[s] * multipliers[s]) * shares[s]
         multipliers[s] += step
         f = step / now
-        fa, fb = inverse_mass[a] * f, inverse_mass[b] * f
-        points[a, 0] -= fa * dx
-        points[a, 1] -= fa * dy
-        points[a, 2] -= fa * dz
-        points[b, 0] += fb * dx
-        points[b, 1] += fb * dy
-        points[b, 2] += fb * dz
+        move(points[a], -inverse_mass[a] * f, way)
+        move(points[b], inverse_mass[b] * f, way)
 
 
-@kernel(error_model="numpy")
+@kernel
+def _twice_way(points: Array, start: tuple[int, int], end: tuple[int, int]) -> Vector:
+    """From the middle of two points to that of two others, twice."""
+    a, b, c, d = points[end[0]], points[end[1]], points[start[0]], points[start[1]]
+    return a[0] + b[0] - c[0] - d[0], a[1] + b[1] - c[1] - d[1], a[2] + b[2] - c[2] - d[2]
+
+
+@kernel
+def _middle(points: Array, ends: tuple[int, int]) -> Vector:
+    a, b = points[ends[0]], points[ends[1]]
+    return 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])
+
+
+@kernel
 def span_frame(points: Array, line: tuple[int, int], base: tuple[int, int], out: Array) -> None:
-    """Axes of a part of the trunk, the columns of out (3,3): x along `line` to the left, y up from the middle of `base`
-    as far as it is perpendicular to x, z forwards."""
-    x0 = points[line[0], 0] - points[line[1], 0]
-    x1 = points[line[0], 1] - points[line[1], 1]
-    x2 = points[line[0], 2] - points[line[1], 2]
-    u0 = points[line[0], 0] + points[line[1], 0] - points[base[0], 0] - points[base[1], 0]
-    u1 = points[line[0], 1] + points[line[1], 1] - points[base[0], 1] - points[base[1], 1]
-    u2 = points[line[0], 2] + points[line[1], 2] - points[base[0], 2] - points[base[1], 2]
-    f = 1.0 / max(np.sqrt(x0 * x0 + x1 * x1 + x2 * x2), _TINY)
-    x0, x1, x2 = f * x0, f * x1, f * x2
-    z0, z1, z2 = x1 * u2 - x2 * u1, x2 * u0 - x0 * u2, x0 * u1 - x1 * u0
-    f = 1.0 / max(np.sqrt(z0 * z0 + z1 * z1 + z2 * z2), _TINY)
-    z0, z1, z2 = f * z0, f * z1, f * z2
-    out[0, 0], out[1, 0], out[2, 0] = x0, x1, x2
-    out[0, 1], out[1, 1], out[2, 1] = z1 * x2 - z2 * x1, z2 * x0 - z0 * x2, z0 * x1 - z1 * x0
-    out[0, 2], out[1, 2], out[2, 2] = z0, z1, z2
+    """Axes of a part of the trunk, the rows of out (3,3): x along `line` to the left, y up from the middle of `base` as far
+    as it is perpendicular to x, z forwards."""
+    x = unit(minus(points[line[0]], points[line[1]]))
+    z = unit(cross(x, _twice_way(points, base, line)))
+    y = cross(z, x)
+    for r in range(3):
+        out[0, r], out[1, r], out[2, r] = x[r], y[r], z[r]
 
 
 @kernel
 def span_frames(points: Array, out: Array) -> None:
-    """Both frames of the trunk, out (2,3,3): UPPER, LOWER."""
+    """Both frames of the trunk, out (2,3,3): UPPER, LOWER; their axes are the rows."""
     span_frame(points, _SHOULDERS, _WAIST, out[0])
     # up is from the hips to the waist: the frame of the line's reverse has y and z reversed with it
     span_frame(points, _HIPS, _WAIST, out[1])
-    for i in range(3):
-        out[1, i, 1] = -out[1, i, 1]
-        out[1, i, 2] = -out[1, i, 2]
+    for r in range(3):
+        out[1, 1, r] = -out[1, 1, r]
+        out[1, 2, r] = -out[1, 2, r]
 
 
 @kernel(error_model="numpy")
@@ -108,17 +115,14 @@ def sweep_swings(
         )
         if wa + wc == 0.0:
             continue
-        g, i = frame[k], axis[k]
+        i = axis[k]
         j, m = _AFTER[i], _AFTER[i + 1]
-        w0 = 0.5 * (points[c, 0] + points[c2, 0] - points[a, 0] - points[a2, 0])
-        w1 = 0.5 * (points[c, 1] + points[c2, 1] - points[a, 1] - points[a2, 1])
-        w2 = 0.5 * (points[c, 2] + points[c2, 2] - points[a, 2] - points[a2, 2])
-        long = np.sqrt(w0 * w0 + w1 * w1 + w2 * w2)
-        if long < _TINY:
+        along, beside, above = frames[frame[k], i], frames[frame[k], j], frames[frame[k], m]
+        way = times(0.5, _twice_way(points, (a, a2), (c, c2)))
+        long = np.sqrt(dot(way, way))
+        if long < TINY:
             continue
-        di = (frames[g, 0, i] * w0 + frames[g, 1, i] * w1 + frames[g, 2, i] * w2) / long
-        dj = (frames[g, 0, j] * w0 + frames[g, 1, j] * w1 + frames[g, 2, j] * w2) / long
-        dm = (frames[g, 0, m] * w0 + frames[g, 1, m] * w1 + frames[g, 2, m] * w2) / long
+        di, dj, dm = dot(along, way) / long, dot(beside, way) / long, dot(above, way) / long
         f = sign[k] / max(1.0 + sign[k] * di, 1e-6)
         sj, sm = -f * dm, f * dj
         lj, uj, lm, um = lower[k, 0], upper[k, 0], lower[k, 1], upper[k, 1]
@@ -130,7 +134,7 @@ def sweep_swings(
         ej = long * (2.0 * f * sm - dj)
         em = long * (-2.0 * f * sj - dm)
         for r in range(3):
-            step = (frames[g, r, i] * ei + frames[g, r, j] * ej + frames[g, r, m] * em) / (wa + wc)
+            step = (along[r] * ei + beside[r] * ej + above[r] * em) / (wa + wc)
             points[a, r] -= inverse_mass[a] * step
             if a != a2:
                 points[a2, r] -= inverse_mass[a2] * step
@@ -145,52 +149,30 @@ def sweep_hinges(
 ) -> None:
     """Turn the lower parts of `rows` back to where their joints bend."""
     ends, frame, axis, sign, forward, side, bend = hinges
+    cos_straight, sin_straight, cos_most = bend[0], bend[1], bend[2]
     for n in range(rows.shape[0]):
         k = rows[n]
         a, b, c = ends[k, 0], ends[k, 1], ends[k, 2]
         wb, wc = inverse_mass[b], inverse_mass[c]
         if wb + wc == 0.0:
             continue
-        d0, d1, d2 = (
-            points[b, 0] - points[a, 0],
-            points[b, 1] - points[a, 1],
-            points[b, 2] - points[a, 2],
-        )
-        f0, f1, f2 = (
-            points[c, 0] - points[b, 0],
-            points[c, 1] - points[b, 1],
-            points[c, 2] - points[b, 2],
-        )
-        upper = np.sqrt(d0 * d0 + d1 * d1 + d2 * d2)
-        lower = np.sqrt(f0 * f0 + f1 * f1 + f2 * f2)
-        if upper < _TINY or lower < _TINY:
+        d, e = minus(points[b], points[a]), minus(points[c], points[b])
+        upper, lower = np.sqrt(dot(d, d)), np.sqrt(dot(e, e))
+        if upper < TINY or lower < TINY:
             continue
-        d0, d1, d2 = d0 / upper, d1 / upper, d2 / upper
-        f0, f1, f2 = f0 / lower, f1 / lower, f2 / lower
-        cos_straight, sin_straight, cos_most = bend[0], bend[1], bend[2]
-        along = d0 * f0 + d1 * f1 + d2 * f2
+        d, e = over(d, upper), over(e, lower)
+        along = dot(d, e)
         if along >= cos_straight:
             continue
         # the direction of the T-pose's bend, swung with the upper part: r = t + 2 (s x t + s x (s x t)) / (1 + s.s)
         # with s = (u x d) / (1 + u.d); t is perpendicular to u
-        at, i = frame[k], axis[k]
-        u0, u1, u2 = (
-            sign[k] * frames[at, 0, i],
-            sign[k] * frames[at, 1, i],
-            sign[k] * frames[at, 2, i],
-        )
-        t0, t1, t2 = (
-            forward[k] * frames[at, 0, 2],
-            forward[k] * frames[at, 1, 2],
-            forward[k] * frames[at, 2, 2],
-        )
+        u = times(sign[k], frames[frame[k], axis[k]])
+        t = times(forward[k], frames[frame[k], 2])
         # for t perpendicular to u that is r = t - (d.t) (u + d) / (1 + u.d)
-        g = (d0 * t0 + d1 * t1 + d2 * t2) / max(1.0 + u0 * d0 + u1 * d1 + u2 * d2, 1e-6)
-        r0, r1, r2 = t0 - g * (u0 + d0), t1 - g * (u1 + d1), t2 - g * (u2 + d2)
-        g = 1.0 / max(np.sqrt(r0 * r0 + r1 * r1 + r2 * r2), _TINY)
-        r0, r1, r2 = g * r0, g * r1, g * r2
-        q0, q1, q2 = d1 * r2 - d2 * r1, d2 * r0 - d0 * r2, d0 * r1 - d1 * r0
-        p, q = f0 * r0 + f1 * r1 + f2 * r2, f0 * q0 + f1 * q1 + f2 * q2
+        g = dot(d, t) / max(1.0 + u[0] * d[0] + u[1] * d[1] + u[2] * d[2], 1e-6)
+        r = unit((t[0] - g * (u[0] + d[0]), t[1] - g * (u[1] + d[1]), t[2] - g * (u[2] + d[2])))
+        s = cross(d, r)
+        p, q = dot(e, r), dot(e, s)
         m = np.sqrt(p * p + q * q)
         new_along, new_p, new_q = along, p, q
         changed = False
@@ -202,7 +184,7 @@ def sweep_hinges(
             ep, eq = m * cos_half, m * edge
             around = (ep - pm) * (ep - pm) + (eq - qm) * (eq - qm)
             # or straighter: whichever is nearer
-            f = sin_straight / max(m, _TINY)
+            f = sin_straight / max(m, TINY)
             straight = (sin_straight - m) * (sin_straight - m)
             straight += (cos_straight - along) * (cos_straight - along)
             if straight < around:
@@ -212,24 +194,17 @@ def sweep_hinges(
                 new_q = eq * cos_middle + ep * sin_middle
             changed = True
         if new_along < cos_most:
-            f = np.sqrt(1.0 - cos_most * cos_most) / max(m, _TINY)
+            f = np.sqrt(1.0 - cos_most * cos_most) / max(m, TINY)
             new_along, new_p, new_q = cos_most, f * new_p, f * new_q
             changed = True
         if not changed:
             continue
-        ea, ep, eq = lower * (new_along - along), lower * (new_p - p), lower * (new_q - q)
-        ea, ep, eq = ea / (wb + wc), ep / (wb + wc), eq / (wb + wc)
-        s0, s1, s2 = (
-            ea * d0 + ep * r0 + eq * q0,
-            ea * d1 + ep * r1 + eq * q1,
-            ea * d2 + ep * r2 + eq * q2,
-        )
-        points[b, 0] -= wb * s0
-        points[b, 1] -= wb * s1
-        points[b, 2] -= wb * s2
-        points[c, 0] += wc * s0
-        points[c, 1] += wc * s1
-        points[c, 2] += wc * s2
+        off = lower * (new_along - along), lower * (new_p - p), lower * (new_q - q)
+        ed, er, es = over(off, wb + wc)
+        for i in range(3):
+            step = ed * d[i] + er * r[i] + es * s[i]
+            points[b, i] -= wb * step
+            points[c, i] += wc * step
 
 
 @kernel(error_model="numpy")
@@ -245,46 +220,29 @@ def push_arms_out(
         elbow, wrist = arms[rows[row], 0], arms[rows[row], 1]
         if inverse_mass[elbow] + inverse_mass[wrist] == 0.0:
             continue
-        w0 = 0.5 * (points[_WAIST[0], 0] + points[_WAIST[1], 0])
-        w1 = 0.5 * (points[_WAIST[0], 1] + points[_WAIST[1], 1])
-        w2 = 0.5 * (points[_WAIST[0], 2] + points[_WAIST[1], 2])
+        waist = _middle(points, _WAIST)
         for n in range(ALONG.shape[0]):
             t = ALONG[n]
-            p0 = points[elbow, 0] + t * (points[wrist, 0] - points[elbow, 0]) - w0
-            p1 = points[elbow, 1] + t * (points[wrist, 1] - points[elbow, 1]) - w1
-            p2 = points[elbow, 2] + t * (points[wrist, 2] - points[elbow, 2]) - w2
-            above = frames[0, 0, 1] * p0 + frames[0, 1, 1] * p1 + frames[0, 2, 1] * p2
-            below = -(frames[1, 0, 1] * p0 + frames[1, 1, 1] * p1 + frames[1, 2, 1] * p2)
+            a, b = points[elbow], minus(points[wrist], points[elbow])
+            p = minus((a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]), waist)
+            above, below = dot(frames[0, 1], p), -dot(frames[1, 1], p)
             if above >= 0.0 or below < 0.0:
-                part, end, height = 0, 0, max(above, 0.0)
-                left, right = _SHOULDERS
+                part, end, height, line = 0, 0, max(above, 0.0), _SHOULDERS
             else:
-                part, end, height = 1, 2, below
-                left, right = _HIPS
-            e0 = 0.5 * (points[left, 0] + points[right, 0]) - w0
-            e1 = 0.5 * (points[left, 1] + points[right, 1]) - w1
-            e2 = 0.5 * (points[left, 2] + points[right, 2]) - w2
-            whole = abs(frames[part, 0, 1] * e0 + frames[part, 1, 1] * e1 + frames[part, 2, 1] * e2)
+                part, end, height, line = 1, 2, below, _HIPS
+            e = minus(_middle(points, line), waist)
+            whole = abs(dot(frames[part, 1], e))
             if part == 0 and height > (1.0 - _BELOW_SHOULDERS) * whole:
                 continue
             if part == 1 and height > whole + _BELOW_HIPS_M:
                 continue
-            share = min(height / max(whole, _TINY), 1.0)
+            share = min(height / max(whole, TINY), 1.0)
             wide = trunk[1, 0] + share * (trunk[end, 0] - trunk[1, 0])
             deep = trunk[1, 1] + share * (trunk[end, 1] - trunk[1, 1])
             ahead = trunk[1, 2] + share * (trunk[end, 2] - trunk[1, 2])
             # the axis leads from waist to the end's middle, which is beside the frame's y where the trunk is bent
-            x = (
-                frames[part, 0, 0] * (p0 - share * e0)
-                + frames[part, 1, 0] * (p1 - share * e1)
-                + frames[part, 2, 0] * (p2 - share * e2)
-            )
-            z = (
-                frames[part, 0, 2] * (p0 - share * e0)
-                + frames[part, 1, 2] * (p1 - share * e1)
-                + frames[part, 2, 2] * (p2 - share * e2)
-            )
-            z -= ahead
+            from_axis = minus(p, times(share, e))
+            x, z = dot(frames[part, 0], from_axis), dot(frames[part, 2], from_axis) - ahead
             u, v = x / wide, z / deep
             rho2 = u * u + v * v
             if rho2 >= 1.0:
@@ -300,7 +258,7 @@ def push_arms_out(
             if norm < _LEAST_LEVER * max(inverse_mass[elbow], inverse_mass[wrist]):
                 continue
             for r in range(3):
-                step = (ex * frames[part, r, 0] + ez * frames[part, r, 2]) / norm
+                step = (ex * frames[part, 0, r] + ez * frames[part, 2, r]) / norm
                 points[elbow, r] += se * step
                 points[wrist, r] += sw * step
 
@@ -314,24 +272,21 @@ def part_pairs(
     gaps (P,2) [m]: how wide, and how far apart along the plane legs begin to pass: beyond that the gap narrows by as much as
     they are farther apart, and they may cross.
     """
+    across = frames[1, 0]
     for row in range(rows.shape[0]):
         k = rows[row]
         left, right = pairs[k, 0], pairs[k, 1]
         w = inverse_mass[left] + inverse_mass[right]
         if w == 0.0:
             continue
-        apart, square = 0.0, 0.0
-        for r in range(3):
-            d = points[left, r] - points[right, r]
-            apart += frames[1, r, 0] * d
-            square += d * d
+        way = minus(points[left], points[right])
+        apart = dot(across, way)
         if apart >= gaps[k, 0]:
             continue
-        beside = np.sqrt(max(square - apart * apart, 0.0))
+        beside = np.sqrt(max(dot(way, way) - apart * apart, 0.0))
         gap = gaps[k, 0] - max(beside - gaps[k, 1], 0.0)
         if apart >= gap:
             continue
         step = (gap - apart) / w
-        for r in range(3):
-            points[left, r] += inverse_mass[left] * step * frames[1, r, 0]
-            points[right, r] -= inverse_mass[right] * step * frames[1, r, 0]
+        move(points[left], inverse_mass[left] * step, across)
+        move(points[right], -inverse_mass[right] * step, across)
