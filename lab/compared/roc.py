@@ -1,11 +1,10 @@
 """Counts of right and wrong colours as a classifier's threshold varies (paper Fig. 6)."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.published.wang2011.classify_kernels import classify, classify_with_prior
+from mocapd.published.wang2011.classify_kernels import classify
 from mocapd.shirt.colour.colour_model import Whitening
 from mocapd.shirt.standard_shirt import standard_shirt
 from mocapd.types import Bytes, Floats, Singles
@@ -93,16 +92,8 @@ def count(truth: Bytes, ids: list[Bytes]) -> Counts:
 
 def sweep_alone(truth: Bytes, picture: Bytes, roi: Roi, whitening: Whitening) -> Counts:
     """Step 1, the Gaussians alone, over the region of a work picture (H,W,3)."""
-
-    def classified(threshold: float) -> Bytes:
-        out = np.empty(truth.shape, np.uint8)
-        classify(
-            picture, _NO_MASK, _NO_MASK_SHIFT, whitening.upper, whitening.offset, threshold,
-            roi[0], roi[1], 1, out,
-        )  # fmt: skip
-        return out
-
-    return _sweep(truth, ALONE_THRESHOLDS, classified)
+    nowhere_far = np.zeros((len(whitening.upper), *truth.shape), np.float32)
+    return _sweep(truth, ALONE_THRESHOLDS, picture, roi, whitening, nowhere_far, 0.0)
 
 
 def sweep_assisted(
@@ -114,16 +105,7 @@ def sweep_assisted(
     prior_per_px: float,
 ) -> Counts:
     """Step 3: the same with the cost C d; distance_px (10,h,w) to the colours of the rendered pose."""
-
-    def classified(threshold: float) -> Bytes:
-        out = np.empty(truth.shape, np.uint8)
-        classify_with_prior(
-            picture, _NO_MASK, _NO_MASK_SHIFT, whitening.upper, whitening.offset, distance_px,
-            prior_per_px, threshold, roi[0], roi[1], 1, out,
-        )  # fmt: skip
-        return out
-
-    return _sweep(truth, PRIOR_THRESHOLDS, classified)
+    return _sweep(truth, PRIOR_THRESHOLDS, picture, roi, whitening, distance_px, prior_per_px)
 
 
 def correct_at(counts: Counts, false_rate: float) -> float:
@@ -135,8 +117,22 @@ def correct_at(counts: Counts, false_rate: float) -> float:
     return float(found)
 
 
-def _sweep(truth: Bytes, thresholds: Floats, classified: Callable[[float], Bytes]) -> Counts:
-    return count(truth, [classified(float(threshold)) for threshold in thresholds])
+def _sweep(
+    truth: Bytes,
+    thresholds: Floats,
+    picture: Bytes,
+    roi: Roi,
+    whitening: Whitening,
+    distance_px: Singles,
+    prior_per_px: float,
+) -> Counts:
+    ids = [np.empty(truth.shape, np.uint8) for _ in thresholds]
+    for threshold, out in zip(thresholds, ids, strict=True):
+        classify(
+            picture, _NO_MASK, _NO_MASK_SHIFT, whitening.upper, whitening.offset, distance_px, prior_per_px,
+            float(threshold), roi[0], roi[1], 1, out,
+        )  # fmt: skip
+    return count(truth, ids)
 
 
 def _no_counts(n: int) -> Counts:

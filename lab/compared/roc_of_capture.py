@@ -31,8 +31,8 @@ from mocapd.evaluate.capture_eval import CaptureResult, Evidence
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.work_size import image_scales
-from mocapd.published.wang2011.classify_kernels import sum_colours
 from mocapd.published.wang2011.distance_maps import distance_maps
+from mocapd.published.wang2011.segmenter import mean_colours
 from mocapd.shirt.colour.colour_model import ColourModel, fold
 from mocapd.shirt.colour.from_pictures import colour_model, white_balance_of
 from mocapd.shirt.colour.white_balance import solve_white_balance
@@ -66,10 +66,8 @@ class _CaptureSegmenter:
         """W for the next frame from the inner pixels of the rendered patches (step 5)."""
         edge = cv2.dilate(rendered, _WHOLE) != cv2.erode(rendered, _WHOLE)
         inner = np.where(edge, 0, rendered).astype(np.uint8)
-        sums, counts = np.empty((10, 3), np.int64), np.empty(10, np.int64)
-        sum_colours(picture, inner, roi[0], roi[1], 1, sums, counts)
+        means, counts = mean_colours(picture[roi[1] : roi[3], roi[0] : roi[2]], inner)
         if counts.sum() > 0:
-            means = sums / (255.0 * np.maximum(counts, 1))[:, None]
             weights = counts.astype(float)
             self.W = solve_white_balance(means, self.colours.mean, weights, prior=self.W)
 

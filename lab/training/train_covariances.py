@@ -17,7 +17,6 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from mocapd.body.areas import N_AREAS
 from mocapd.body.model import BodyModel, build_model, shaped
 from mocapd.body.posing_kernels import difference
 from mocapd.body.shape import FACTOR_SD
@@ -27,12 +26,12 @@ from mocapd.published.wang2011.drawing import (
     Grid,
     PatchRenderer,
     Posture,
+    classified_patches,
     draw,
     posture,
     project_body,
 )
 from mocapd.published.wang2011.params import Params
-from mocapd.published.wang2011.patch_kernels import classified_patches
 from mocapd.published.wang2011.placement import blended_local, constraints, guess, place
 from mocapd.published.wang2011.segmenter import Sight
 from mocapd.shirt.garment import shirt_labels
@@ -169,15 +168,14 @@ def observe(
     root_m, local[0] = place(list(guesses.values()), marks)
     blended = posture(model, root_m, local)
     errors.blend.append(_gap(model, assumed, blended))
-    count, centroid = np.empty(N_AREAS), np.empty((N_AREAS, 2))
     for name, g in guesses.items():
         grid = sights[name].grid
         rendered = np.empty((grid.height, grid.width), np.uint8)
         drawing = draw(model, blended, g.camera, grid)
         label_triangles(drawing.triangle_at, shirt_labels(model).label, rendered)
         _, nearest_yx = distance_maps(rendered, _REACH)
-        classified_patches(
-            sights[name].ids, nearest_yx, drawing.triangle_at, model.area, count, centroid
+        count, centroid = classified_patches(
+            sights[name].ids, nearest_yx, drawing.triangle_at, model.area
         )
         truth = draw(model, assumed, g.camera, grid)
         both = (count >= params.min_patch_samples) & (truth.count >= params.min_patch_samples)

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from mocapd.published.wang2011.histogram_kernels import (
     BINS,
-    chrominance_bins,
+    DIVISIONS,
+    NO_BIN,
     integral_histogram,
     uniformity,
 )
@@ -47,14 +48,38 @@ def histogram_search(
     """
     step = params.step_px
     height, width = pixels.shape[0] // step, pixels.shape[1] // step
-    bins = np.empty((height, width), dtype=np.uint8)
     integral = np.empty((height + 1, width + 1, BINS), dtype=np.uint16)
     radii: NDArray[np.int64] = np.array(params.radii, dtype=np.int64)
     u: Singles = np.empty((len(radii), height, width), dtype=np.float32)
-    chrominance_bins(pixels, mask, mask_shift, step, params.min_sum, bins)
+    bins = chrominance_bins(pixels, mask, mask_shift, step, params.min_sum)
     integral_histogram(bins, integral)
     uniformity(integral, radii, params.bin_cap, u)
     return weighted_mean(u, radii, step, params.deviation)
+
+
+def chrominance_bins(pixels: Bytes, mask: Bytes, shift: int, step: int, min_sum: int) -> Bytes:
+    """(gh,gw): the chrominance bin 0..99 of every `step`-th pixel, NO_BIN for background.
+
+    The chrominances (r,g,b)/(r+g+b) fill a triangle; ten divisions of each side cut it into exactly a hundred equal
+    triangles. The sample (i,j) is the pixel at the middle of its cell. Pixels darker than r+g+b = min_sum have no
+    chrominance to speak of and count as grey.
+    """
+    rows, columns = (np.arange(n // step) * step + step // 2 for n in pixels.shape[:2])
+    sampled = pixels[step // 2 :: step, step // 2 :: step][: len(rows), : len(columns)].astype(
+        np.int16
+    )
+    total = sampled.sum(axis=2)
+    sampled[total < min_sum] = 1
+    cells = DIVISIONS * sampled // sampled.sum(axis=2, keepdims=True, dtype=np.int16)
+    # barycentric cell: red row, green column, and which of the cell's two triangles
+    red = np.minimum(cells[..., 2], DIVISIONS - 1)
+    green = np.minimum(cells[..., 1], DIVISIONS - 1 - red)
+    upside_down = red + green + cells[..., 0] < DIVISIONS - 1
+    # row `red` holds 2 (10 - red) - 1 triangles; rows above it hold the rest
+    bins = red * (2 * DIVISIONS - red) + 2 * green + upside_down
+    return np.where(mask[np.ix_(rows >> shift, columns >> shift)] == 0, NO_BIN, bins).astype(
+        np.uint8
+    )
 
 
 def weighted_mean(

@@ -1,9 +1,8 @@
 """Colour classification of pixels, exact (paper §5.2 steps 1 and 3).
 
-All kernels look at the samples pixels[y0 + stride i, x0 + stride j] of a whole frame, for (i,j)
-over the shape of `out`, which the caller places inside the frame. `mask` may be coarser than the
-frame by a power of two: it is read at [y >> mask_shift, x >> mask_shift], and 0 is background. The
-distance to a colour is written out twice: as a function it made both four times as slow.
+It looks at the samples pixels[y0 + stride i, x0 + stride j] of a whole frame, for (i,j) over the shape of `out`, which the
+caller places inside the frame. `mask` may be coarser than the frame by a power of two: it is read at [y >> mask_shift,
+x >> mask_shift], and 0 is background.
 """
 
 import numpy as np
@@ -22,60 +21,6 @@ def classify(
     mask_shift: int,
     upper: Float32,
     offset: Float32,
-    threshold: float,
-    x0: int,
-    y0: int,
-    stride: int,
-    out: UInt8,
-) -> tuple[int, int]:
-    """Write the id 1..10 of the nearest colour within `threshold` [standard deviations], else 0.
-
-    pixels_bgr (H,W,3); upper (10,3,3) and offset (10,3) of `colour_model.fold`; out (h,w). Returns
-    the counts of classified and of foreground samples.
-    """
-    limit = np.float32(threshold * threshold)
-    classified = 0
-    foreground = 0
-    for i in range(out.shape[0]):
-        row = pixels_bgr[y0 + stride * i]
-        mask_row = mask[(y0 + stride * i) >> mask_shift]
-        for j in range(out.shape[1]):
-            x = x0 + stride * j
-            out[i, j] = 0
-            if mask_row[x >> mask_shift] == 0:
-                continue
-            foreground += 1
-            b = np.float32(row[x, 0])
-            g = np.float32(row[x, 1])
-            r = np.float32(row[x, 2])
-            best_id = np.uint8(0)
-            best = limit
-            for k in range(upper.shape[0]):
-                z2 = upper[k, 2, 2] * r + offset[k, 2]
-                distance2 = z2 * z2
-                if distance2 >= best:
-                    continue
-                z1 = upper[k, 1, 1] * g + upper[k, 1, 2] * r + offset[k, 1]
-                distance2 += z1 * z1
-                if distance2 >= best:
-                    continue
-                z0 = upper[k, 0, 0] * b + upper[k, 0, 1] * g + upper[k, 0, 2] * r + offset[k, 0]
-                distance2 += z0 * z0
-                if distance2 < best:
-                    best = distance2
-                    best_id = np.uint8(k + 1)
-            out[i, j] = best_id
-            classified += int(best_id > 0)
-    return classified, foreground
-
-
-@kernel
-def classify_with_prior(
-    pixels_bgr: UInt8,
-    mask: UInt8,
-    mask_shift: int,
-    upper: Float32,
-    offset: Float32,
     distance_px: Float32,
     prior_per_px: float,
     threshold: float,
@@ -84,11 +29,12 @@ def classify_with_prior(
     stride: int,
     out: UInt8,
 ) -> tuple[int, int]:
-    """As `classify`, with the cost C d of lying d away from where the pose shows the colour (step 3).
+    """Write the id 1..10 of the nearest colour within `threshold` [standard deviations], else 0.
 
-    distance_px (10,h,w) on the grid of `out`: distance to the nearest sample that the rasterised
-    pose gives the colour, in the unit that `prior_per_px` (C, 6 / s in the paper) is per;
-    `threshold` (T = 5) bounds the sum.
+    To the distance of a colour comes the cost C d of lying d away from where the pose shows it (step 3): distance_px
+    (10,h,w) on the grid of `out`, in the unit that `prior_per_px` (C, 6 / s in the paper) is per, 0 in step 1.
+    pixels_bgr (H,W,3); upper (10,3,3) and offset (10,3) of `colour_model.fold`; out (h,w). Returns the counts of
+    classified and of foreground samples.
     """
     classified = 0
     foreground = 0
@@ -128,32 +74,3 @@ def classify_with_prior(
             out[i, j] = best_id
             classified += int(best_id > 0)
     return classified, foreground
-
-
-@kernel
-def sum_colours(
-    pixels_bgr: UInt8,
-    ids: UInt8,
-    x0: int,
-    y0: int,
-    stride: int,
-    sums_rgb: NDArray[np.int64],
-    counts: NDArray[np.int64],
-) -> None:
-    """Add the samples of each id 1..10 of `ids` (h,w): sums_rgb (10,3) of bytes, counts (10,).
-
-    Zeroes both first. sums / (255 counts) are the image means that `solve_white_balance` takes.
-    """
-    sums_rgb[:] = 0
-    counts[:] = 0
-    for i in range(ids.shape[0]):
-        row = pixels_bgr[y0 + stride * i]
-        for j in range(ids.shape[1]):
-            k = ids[i, j]
-            if k == 0:
-                continue
-            x = x0 + stride * j
-            sums_rgb[k - 1, 0] += row[x, 2]
-            sums_rgb[k - 1, 1] += row[x, 1]
-            sums_rgb[k - 1, 2] += row[x, 0]
-            counts[k - 1] += 1

@@ -10,8 +10,7 @@ from mocapd.body.arrays import PosedJoints, camera_arrays, plain
 from mocapd.body.model import BodyModel
 from mocapd.body.posing_kernels import forward_kinematics, skin_and_project
 from mocapd.body.skeleton import N_JOINTS
-from mocapd.published.wang2011.patch_kernels import rendered_patches
-from mocapd.types import Camera, Floats, Ints
+from mocapd.types import Bytes, Camera, Floats, Ints
 from mocapd.vision.raster_kernels import rasterise
 
 
@@ -29,6 +28,11 @@ class Grid:
         """Positions (...,2) on the grid as pixels."""
         pixels: Floats = samples * self.stride + np.array([self.x0, self.y0], dtype=float)
         return pixels
+
+    def sampled(self, pixels: Bytes) -> Bytes:
+        """The samples (height,width,3) of a whole frame."""
+        below, right = self.y0 + self.stride * self.height, self.x0 + self.stride * self.width
+        return pixels[self.y0 : below : self.stride, self.x0 : right : self.stride]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,10 +91,33 @@ def draw_vertices(
     """Rasterise projected vertices."""
     triangle_at = np.empty((height, width), np.int32)
     rasterise(xy, depth, model.triangles, np.empty((height, width), np.float32), triangle_at)
-    samples = np.empty(len(model.triangles), np.int64)
-    count, centroid = np.empty(N_AREAS), np.empty((N_AREAS, 2))
-    rendered_patches(triangle_at, model.area, samples, count, centroid)
-    return PatchRenderer(triangle_at, samples, count, centroid)
+    at = np.flatnonzero(triangle_at >= 0)  # flat, which is twice as fast
+    y, x = np.divmod(at, width)
+    seen = triangle_at.ravel()[at]
+    samples = np.bincount(seen, minlength=len(model.triangles))
+    return PatchRenderer(triangle_at, samples, *_patch_centroids(model.area[seen], x, y))
+
+
+def classified_patches(
+    ids: Bytes, nearest_yx: NDArray[np.int16], triangle_at: NDArray[np.int32], area: Bytes
+) -> tuple[Floats, Floats]:
+    """Count (A,) and mean x, y (A,2) of the classified samples (h,w) of each patch.
+
+    Each colour is on two patches: a sample belongs to the one whose rendered sample of that colour is nearest, nearest_yx
+    (10,h,w,2).
+    """
+    y, x = np.nonzero(ids)
+    row, column = nearest_yx[ids[y, x] - 1, y, x].T
+    near = row >= 0
+    patch = area[triangle_at[row[near], column[near]]]
+    return _patch_centroids(patch, x[near], y[near])
+
+
+def _patch_centroids(patch: Bytes, x: Ints, y: Ints) -> tuple[Floats, Floats]:
+    """Count (A,) and mean x, y (A,2) of samples (S,) in each patch, an `Area`; 0 without samples."""
+    count = np.bincount(patch, minlength=N_AREAS).astype(float)
+    sums = [np.bincount(patch, at, N_AREAS) for at in (x, y)]
+    return count, np.stack(sums, axis=1) / np.maximum(count, 1.0)[:, None]
 
 
 def draw(model: BodyModel, body: Posture, camera: Camera, grid: Grid) -> PatchRenderer:

@@ -8,43 +8,9 @@ from mocapd.kernels.decorator import kernel
 UInt8 = NDArray[np.uint8]
 UInt16 = NDArray[np.uint16]
 
-DIVISIONS = 10
+DIVISIONS = 10  # of each side of the triangle of chrominances
 BINS = DIVISIONS * DIVISIONS
 NO_BIN = 255
-
-
-@kernel
-def chrominance_bins(
-    pixels_bgr: UInt8, mask: UInt8, mask_shift: int, step: int, min_sum: int, out: UInt8
-) -> None:
-    """out (gh,gw): the chrominance bin 0..99 of every `step`-th pixel, NO_BIN for background.
-
-    The chrominances (r,g,b)/(r+g+b) fill a triangle; ten divisions of each side cut it into
-    exactly a hundred equal triangles. The sample (i,j) is the pixel at the middle of its cell.
-    Pixels darker than r+g+b = min_sum have no chrominance to speak of and count as grey.
-    """
-    grey = DIVISIONS // 3
-    grey_bin = grey * (2 * DIVISIONS - grey) + 2 * grey
-    for i in range(out.shape[0]):
-        row = pixels_bgr[i * step + step // 2]
-        mask_row = mask[(i * step + step // 2) >> mask_shift]
-        for j in range(out.shape[1]):
-            x = j * step + step // 2
-            if mask_row[x >> mask_shift] == 0:
-                out[i, j] = NO_BIN
-                continue
-            b, g, r = int(row[x, 0]), int(row[x, 1]), int(row[x, 2])
-            total = r + g + b
-            if total < min_sum:
-                out[i, j] = grey_bin
-                continue
-            # barycentric cell: red row, green column, and which of the cell's two triangles
-            red = min(DIVISIONS - 1, DIVISIONS * r // total)
-            green = min(DIVISIONS - 1 - red, DIVISIONS * g // total)
-            blue = DIVISIONS * b // total
-            upside_down = 1 if red + green + blue < DIVISIONS - 1 else 0
-            # row `red` holds 2 (10 - red) - 1 triangles; rows above it hold the rest
-            out[i, j] = red * (2 * DIVISIONS - red) + 2 * green + upside_down
 
 
 @kernel

@@ -1,4 +1,4 @@
-"""Compiled parts of the centroid method: patches on rendered and classified id maps, their derivatives."""
+"""Derivatives of the patches' centroids."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,87 +9,6 @@ from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
-Int32 = NDArray[np.int32]
-
-
-@kernel
-def rendered_patches(
-    triangle_at: Int32, patch: Bytes, samples: NDArray[np.int64], count: Array, centroid: Array
-) -> None:
-    """Samples seen per triangle (T,); per patch, an `Area`, their count (A,) and mean x, y (A,2)."""
-    samples[:] = 0
-    count[:] = 0.0
-    centroid[:] = 0.0
-    h, w = triangle_at.shape
-    for y in range(h):
-        for x in range(w):
-            t = triangle_at[y, x]
-            if t < 0:
-                continue
-            samples[t] += 1
-            p = patch[t]
-            count[p] += 1.0
-            centroid[p, 0] += x
-            centroid[p, 1] += y
-    for p in range(count.shape[0]):
-        if count[p] > 0.0:
-            centroid[p, 0] /= count[p]
-            centroid[p, 1] /= count[p]
-
-
-@kernel
-def classified_patches(
-    ids: Bytes,
-    nearest_yx: NDArray[np.int16],
-    triangle_at: Int32,
-    patch: Bytes,
-    count: Array,
-    centroid: Array,
-) -> None:
-    """Count (A,) and mean x, y (A,2) of the classified samples (h,w) of each patch.
-
-    Each colour is on two patches: a sample belongs to the one whose rendered sample of that colour is
-    nearest, nearest_yx (10,h,w,2).
-    """
-    count[:] = 0.0
-    centroid[:] = 0.0
-    h, w = ids.shape
-    for y in range(h):
-        for x in range(w):
-            k = ids[y, x]
-            if k == 0:
-                continue
-            row, column = nearest_yx[k - 1, y, x, 0], nearest_yx[k - 1, y, x, 1]
-            if row < 0:
-                continue
-            p = patch[triangle_at[row, column]]
-            count[p] += 1.0
-            centroid[p, 0] += x
-            centroid[p, 1] += y
-    for p in range(count.shape[0]):
-        if count[p] > 0.0:
-            centroid[p, 0] /= count[p]
-            centroid[p, 1] /= count[p]
-
-
-@kernel
-def inner_ids(triangle_at: Int32, colour: Bytes, out: Bytes) -> None:
-    """Colour ids (h,w) of the rendered samples whose four neighbours have the same colour, else 0."""
-    h, w = triangle_at.shape
-    out[:] = 0
-    for y in range(1, h - 1):
-        for x in range(1, w - 1):
-            t = triangle_at[y, x]
-            if t < 0:
-                continue
-            c = colour[t]
-            same = True
-            for a, b in ((-1, 0), (1, 0), (0, -1), (0, 1)):
-                s = triangle_at[y + a, x + b]
-                if s < 0 or colour[s] != c:
-                    same = False
-            if same:
-                out[y, x] = c
 
 
 @kernel

@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from mocapd.published.wang2011.chrominance import histogram_search
-from mocapd.published.wang2011.classify_kernels import classify, classify_with_prior, sum_colours
+from mocapd.published.wang2011.classify_kernels import classify
 from mocapd.published.wang2011.drawing import Grid, PatchRenderer
 from mocapd.published.wang2011.mog_background import BackgroundSubtractor, mask_size
 from mocapd.published.wang2011.params import Params
-from mocapd.published.wang2011.patch_kernels import inner_ids
 from mocapd.shirt.colour.colour_model import ColourModel, fold
 from mocapd.shirt.colour.white_balance import (
     remember_illumination,
@@ -17,7 +17,10 @@ from mocapd.shirt.colour.white_balance import (
     solve_white_balance,
 )
 from mocapd.shirt.pose_database.idmap_crop_kernels import crop_id_map
-from mocapd.types import Bytes, Camera, Floats, Singles
+from mocapd.types import Bytes, Camera, Floats, Ints, Singles
+from mocapd.vision.raster_kernels import label_triangles
+
+_CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,10 +69,12 @@ class Wang2011Segmenter:
         if found.u_max == 0.0:
             return None
         grid = self._grid(found.x_px, found.y_px, params.crop * found.s_px)
-        ids, coloured, foreground = self._classify(pixels, mask, shift, grid, self.W)
+        ids, coloured, foreground = self._classify(
+            pixels, mask, shift, grid, self.W, params.threshold
+        )
         if params.adaptive_white_balance and coloured < params.poor_classification * foreground:
             for W in self.references:
-                other, n, _ = self._classify(pixels, mask, shift, grid, W)
+                other, n, _ = self._classify(pixels, mask, shift, grid, W, params.threshold)
                 if n > coloured:
                     self.W, ids, coloured = W, other, n
         map40, scale, centre = crop_id_map(ids)
@@ -82,15 +87,10 @@ class Wang2011Segmenter:
 
     def refine(self, pixels: Bytes, sight: Sight, distance: Singles) -> Bytes:
         """Step 3: ids (h,w) with the pose as prior; distance (10,h,w) [samples] to its colours."""
-        params = self.params
-        whitening = fold(self.colours, self.W)
-        out = np.empty_like(sight.ids)
-        per_sample = params.prior_weight / sight.size_px * sight.grid.stride
-        classify_with_prior(
-            pixels, sight.mask, sight.mask_shift, whitening.upper, whitening.offset, distance,
-            per_sample, params.prior_threshold, sight.grid.x0, sight.grid.y0, sight.grid.stride, out,
-        )  # fmt: skip
-        return out
+        params, grid = self.params, sight.grid
+        per_sample = params.prior_weight / sight.size_px * grid.stride
+        prior = params.prior_threshold, distance, per_sample
+        return self._classify(pixels, sight.mask, sight.mask_shift, grid, self.W, *prior)[0]
 
     def learn(
         self, pixels: Bytes, grid: Grid, drawing: PatchRenderer, colour: Bytes, refined: Bytes
@@ -105,13 +105,14 @@ class Wang2011Segmenter:
         if not params.adaptive_white_balance:
             return
         ids = np.empty(drawing.triangle_at.shape, np.uint8)
-        inner_ids(drawing.triangle_at, colour, ids)
-        ids[ids != refined] = 0
-        sums, counts = np.empty((10, 3), np.int64), np.empty(10, np.int64)
-        sum_colours(pixels, ids, grid.x0, grid.y0, grid.stride, sums, counts)
+        label_triangles(drawing.triangle_at, colour, ids)
+        same = cv2.dilate(ids, _CROSS) == cv2.erode(ids, _CROSS)
+        same[[0, -1]] = same[:, [0, -1]] = False
+        means, counts = mean_colours(
+            grid.sampled(pixels), np.where(same & (ids == refined), ids, 0)
+        )
         if counts.sum() == 0:
             return
-        means = sums / (255.0 * np.maximum(counts, 1))[:, None]
         # hue is believed more than brightness, so that a patch in shade does not brighten the rest
         self.W = solve_white_balance(
             means, self.colours.mean, np.sqrt(counts), prior=self.W, precision=self._precision
@@ -130,12 +131,15 @@ class Wang2011Segmenter:
         return Grid(x0, y0, max((x1 - x0) // n, 1), max((y1 - y0) // n, 1), n)
 
     def _classify(
-        self, pixels: Bytes, mask: Bytes, shift: int, grid: Grid, W: Floats
-    ) -> tuple[Bytes, int, int]:
+        self, pixels: Bytes, mask: Bytes, shift: int, grid: Grid, W: Floats, threshold: float,
+        distance: Singles | None = None, per_sample: float = 0.0,
+    ) -> tuple[Bytes, int, int]:  # fmt: skip
         whitening = fold(self.colours, W)
         ids = np.empty((grid.height, grid.width), np.uint8)
+        if distance is None:
+            distance = np.broadcast_to(np.float32(0.0), (len(whitening.upper), *ids.shape))
         coloured, foreground = classify(
-            pixels, mask, shift, whitening.upper, whitening.offset, self.params.threshold,
+            pixels, mask, shift, whitening.upper, whitening.offset, distance, per_sample, threshold,
             grid.x0, grid.y0, grid.stride, ids,
         )  # fmt: skip
         return ids, coloured, foreground
@@ -148,3 +152,11 @@ class Wang2011Segmenter:
             (grid.y0 + rows * grid.stride) >> shift, (grid.x0 + columns * grid.stride) >> shift
         ] = 255
         self._body = body
+
+
+def mean_colours(pixels: Bytes, ids: Bytes) -> tuple[Floats, Ints]:
+    """Mean RGB (10,3) in 0..1 of the pixels (h,w,3) BGR of each id 1..10, 0 without any, and their counts (10,)."""
+    of = ids[ids > 0] - 1
+    counts = np.bincount(of, minlength=10)
+    sums = [np.bincount(of, channel, 10) for channel in pixels[ids > 0].T[::-1]]
+    return np.stack(sums, axis=1) / (255.0 * np.maximum(counts, 1))[:, None], counts

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mocapd.body.areas import ARM_AREAS, N_AREAS, TORSO_QUARTERS, Area
+from mocapd.body.areas import ARM_AREAS, TORSO_QUARTERS, Area
 from mocapd.body.model import build_model
 from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.body.skeleton import (
@@ -20,9 +20,14 @@ from mocapd.geometry import rotations
 from mocapd.published.wang2011.centroid_ik import CentroidSolver, Target
 from mocapd.published.wang2011.covariances import load_covariances
 from mocapd.published.wang2011.distance_maps import distance_maps
-from mocapd.published.wang2011.drawing import PatchRenderer, Posture, draw, posture
+from mocapd.published.wang2011.drawing import (
+    PatchRenderer,
+    Posture,
+    classified_patches,
+    draw,
+    posture,
+)
 from mocapd.published.wang2011.params import Params
-from mocapd.published.wang2011.patch_kernels import classified_patches
 from mocapd.published.wang2011.placement import blended_local, constraints, guess, place
 from mocapd.published.wang2011.segmenter import Sight, Wang2011Segmenter
 from mocapd.shirt.colour.colour_model import ColourModel
@@ -218,8 +223,7 @@ class Wang2011Tracker:
         reach = params.prior_threshold / params.prior_weight * sight.size_px / grid.stride
         distance, nearest_yx = distance_maps(rendered, reach)
         ids = segmenter.refine(pixels, sight, distance) if params.pose_prior else sight.ids
-        count, centroid = np.empty(N_AREAS), np.empty((N_AREAS, 2))
-        classified_patches(ids, nearest_yx, drawing.triangle_at, self._model.area, count, centroid)
+        count, centroid = classified_patches(ids, nearest_yx, drawing.triangle_at, self._model.area)
         wanted = count >= params.min_patch_samples
         wanted[0] = False
         return Target(segmenter.camera, grid, grid.to_pixels(centroid), wanted), ids

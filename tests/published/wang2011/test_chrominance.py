@@ -5,11 +5,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mocapd.published.wang2011.chrominance import HistogramParams, histogram_search, weighted_mean
+from mocapd.published.wang2011.chrominance import (
+    HistogramParams,
+    chrominance_bins,
+    histogram_search,
+    weighted_mean,
+)
 from mocapd.published.wang2011.histogram_kernels import (
     BINS,
     NO_BIN,
-    chrominance_bins,
     integral_histogram,
     uniformity,
 )
@@ -21,9 +25,8 @@ EVERYWHERE = np.ones((1, 1), dtype=np.uint8)
 
 
 def bins_of(pixels: Bytes) -> Bytes:
-    out = np.empty(len(pixels), dtype=np.uint8)
-    chrominance_bins(pixels[None].copy(), EVERYWHERE, 31, 1, 3, out[None])
-    return out
+    bins: Bytes = chrominance_bins(pixels[None], EVERYWHERE, 31, 1, 3)[0]
+    return bins
 
 
 def test_the_bins_are_the_hundred_triangles() -> None:
@@ -51,8 +54,7 @@ def test_brightness_does_not_change_a_bin(bgr: list[int], gain: int) -> None:
 def test_dark_pixels_are_grey_and_background_is_nothing() -> None:
     pixels = np.array([[[0, 0, 9], [0, 0, 0], [120, 120, 120], [0, 0, 200]]], dtype=np.uint8)
     mask = np.array([[255, 255, 255, 0]], dtype=np.uint8)
-    out = np.empty((1, 4), dtype=np.uint8)
-    chrominance_bins(pixels, mask, 0, 1, 48, out)
+    out = chrominance_bins(pixels, mask, 0, 1, 48)
     assert out[0, 0] == out[0, 1] == out[0, 2]
     assert out[0, 3] == NO_BIN
 

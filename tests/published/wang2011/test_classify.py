@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from mocapd.published.wang2011.classify_kernels import classify, classify_with_prior, sum_colours
+from mocapd.published.wang2011.classify_kernels import classify
+from mocapd.published.wang2011.segmenter import mean_colours
 from mocapd.shirt.colour.colour_model import fold
 from mocapd.shirt.colour.colour_tables import colour_table
 from mocapd.shirt.colour.lut_kernels import classify_by_table
@@ -14,6 +15,7 @@ from tests.shirt.example_colours import MEANS, example_model, example_white_bala
 MODEL = example_model()
 TOLERANT = MODEL.tolerating()
 W = example_white_balance()
+NO_DISTANCE = np.zeros((10, 48, 64), dtype=np.float32)
 
 
 def picture(seed: int = 0, h: int = 48, w: int = 64) -> Bytes:
@@ -38,7 +40,8 @@ def test_exact_classification_is_the_formula(model: object, threshold: float) ->
     pixels, mask = picture(), half_mask((48, 64))
     whitening = fold(model, W)  # type: ignore[arg-type]
     out = np.full((48, 64), 77, dtype=np.uint8)
-    counts = classify(pixels, mask, 0, whitening.upper, whitening.offset, threshold, 0, 0, 1, out)
+    folded = whitening.upper, whitening.offset, NO_DISTANCE, 0.0
+    counts = classify(pixels, mask, 0, *folded, threshold, 0, 0, 1, out)
     costs = naive.mahalanobis(pixels, W, model)  # type: ignore[arg-type]
     expected = naive.classify(costs, threshold, mask)
     near_a_tie = np.sort(costs, axis=2)[..., 1] - costs.min(axis=2) < 1e-4
@@ -52,10 +55,11 @@ def test_exact_classification_is_the_formula(model: object, threshold: float) ->
 def test_a_region_is_that_part_of_the_frame(stride: int) -> None:
     pixels, coarse = picture(), half_mask((24, 32))
     whitening = fold(MODEL, W)
+    folded = whitening.upper, whitening.offset, NO_DISTANCE, 0.0
     whole = np.zeros((48, 64), dtype=np.uint8)
-    classify(pixels, coarse, 1, whitening.upper, whitening.offset, 3.0, 0, 0, 1, whole)
+    classify(pixels, coarse, 1, *folded, 3.0, 0, 0, 1, whole)
     part = np.zeros((10, 12), dtype=np.uint8)
-    classify(pixels, coarse, 1, whitening.upper, whitening.offset, 3.0, 7, 5, stride, part)
+    classify(pixels, coarse, 1, *folded, 3.0, 7, 5, stride, part)
     assert (part == whole[5 : 5 + 10 * stride : stride, 7 : 7 + 12 * stride : stride]).all()
     table = colour_table(MODEL, W, 3.0)
     classify_by_table(pixels, coarse, 1, table, 0, 0, 1, whole)
@@ -101,20 +105,8 @@ def test_the_prior_adds_its_cost(threshold: float) -> None:
     per_px = 6.0 / 150.0
     whitening = fold(MODEL, W)
     out = np.zeros((48, 64), dtype=np.uint8)
-    counts = classify_with_prior(
-        pixels,
-        mask,
-        0,
-        whitening.upper,
-        whitening.offset,
-        distance,
-        per_px,
-        threshold,
-        0,
-        0,
-        1,
-        out,
-    )
+    folded = whitening.upper, whitening.offset, distance, per_px
+    counts = classify(pixels, mask, 0, *folded, threshold, 0, 0, 1, out)
     costs = naive.mahalanobis(pixels, W, MODEL) + per_px * np.moveaxis(distance, 0, 2)
     clear = np.abs(costs.min(axis=2) - threshold) > 1e-3
     clear &= np.diff(np.sort(costs, axis=2)[..., :2], axis=2)[..., 0] > 1e-3
@@ -122,12 +114,11 @@ def test_the_prior_adds_its_cost(threshold: float) -> None:
     assert counts == ((out > 0).sum(), (mask > 0).sum())
 
 
-def test_sums_are_the_means_of_each_id() -> None:
-    pixels = picture()
+def test_mean_colours_are_those_of_each_id() -> None:
+    pixels = picture()[4:24, 3:28]
     ids = np.random.default_rng(6).integers(0, 8, (20, 25)).astype(np.uint8)
-    sums, counts = np.full((10, 3), 5, dtype=np.int64), np.full(10, 5, dtype=np.int64)
-    sum_colours(pixels, ids, 3, 4, 2, sums, counts)
-    samples = pixels[4:44:2, 3:53:2]
+    means, counts = mean_colours(pixels, ids)
     for k in range(1, 11):
         assert counts[k - 1] == (ids == k).sum()
-        assert (sums[k - 1] == samples[ids == k].astype(int).sum(axis=0)[::-1]).all()
+        of_id = pixels[ids == k].reshape(-1, 3)[:, ::-1] / 255.0
+        np.testing.assert_allclose(means[k - 1], of_id.mean(axis=0) if len(of_id) else 0.0)

@@ -19,6 +19,7 @@ from mocapd.published.wang2011.covariances import load_covariances
 from mocapd.published.wang2011.drawing import (
     Grid,
     Posture,
+    classified_patches,
     draw,
     posed_joints,
     posed_points,
@@ -26,11 +27,7 @@ from mocapd.published.wang2011.drawing import (
     triangle_points,
 )
 from mocapd.published.wang2011.params import Params, paper_params, tolerating
-from mocapd.published.wang2011.patch_kernels import (
-    centroid_rows,
-    classified_patches,
-    rendered_patches,
-)
+from mocapd.published.wang2011.patch_kernels import centroid_rows
 from mocapd.published.wang2011.placement import Constraints, Guess, place
 from mocapd.published.wang2011.segmenter import Wang2011Segmenter
 from mocapd.published.wang2011.tracker import Wang2011Tracker
@@ -134,25 +131,19 @@ def arm_error_m(tracked: Floats, body: Posture) -> float:
     return float(np.sqrt(((tracked[joints] - body.joints_m[joints]) ** 2).sum(axis=1).mean()))
 
 
-# --- kernels ---------------------------------------------------------------------------------
+# --- patches ---------------------------------------------------------------------------------
 
 
 def test_patches_of_a_drawing_equal_numpy_twin() -> None:
     seen = draw(MODEL, standing(), RIG.cameras[0], Grid(100, 50, 200, 180, 2))
-    samples, count, centroid = (
-        np.empty(len(MODEL.triangles), int),
-        np.empty(N_AREAS),
-        np.empty((N_AREAS, 2)),
-    )
-    rendered_patches(seen.triangle_at, MODEL.area, samples, count, centroid)
     patch_at = np.where(seen.triangle_at >= 0, MODEL.area[seen.triangle_at], 255)
     for p in range(N_AREAS):
         y, x = np.nonzero(patch_at == p)
-        assert count[p] == len(x)
+        assert seen.count[p] == len(x)
         if len(x):
-            np.testing.assert_allclose(centroid[p], [x.mean(), y.mean()])
+            np.testing.assert_allclose(seen.centroid[p], [x.mean(), y.mean()])
     drawn = seen.triangle_at[seen.triangle_at >= 0]
-    np.testing.assert_array_equal(samples, np.bincount(drawn, minlength=len(samples)))
+    np.testing.assert_array_equal(seen.samples, np.bincount(drawn, minlength=len(seen.samples)))
 
 
 def test_a_colour_is_given_to_the_nearer_of_its_two_patches() -> None:
@@ -165,8 +156,7 @@ def test_a_colour_is_given_to_the_nearer_of_its_two_patches() -> None:
     ids[4:7, 1:5], ids[4:7, 15:19] = 4, 4
     nearest = np.full((10, 10, 20, 2), -1, np.int16)
     nearest[3, :, :10], nearest[3, :, 10:] = (5, 2), (5, 17)
-    count, centroid = np.empty(N_AREAS), np.empty((N_AREAS, 2))
-    classified_patches(ids, nearest, triangle_at, patch, count, centroid)
+    count, centroid = classified_patches(ids, nearest, triangle_at, patch)
     assert count[a] == count[b] == 12
     assert centroid[a].tolist() == [2.5, 5.0]
     assert centroid[b].tolist() == [16.5, 5.0]
