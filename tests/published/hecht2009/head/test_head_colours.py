@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from mocapd.published.hecht2009.head.head_colour_kernels import chroma_bin, colour_bin
+from mocapd.published.hecht2009.head.head_colour_kernels import colour_bin
 from mocapd.published.hecht2009.head.head_colours import (
     HeadEllipse,
+    chroma_bins,
     face_side,
     has_colours,
     initial_colours,
@@ -38,10 +39,8 @@ def person(skin: tuple[int, int, int], light: float = 1.0, turned: float = 0.0) 
 def test_skin_is_told_from_room_and_shirt_whatever_its_colour(skin: tuple[int, int, int]) -> None:
     picture = person(skin)
     colours = update_colours(initial_colours(), picture, OUTLINE, True, 1 / 30)
-    skin_odds = np.append(
-        colours.skin_odds, -1.0
-    )  # the last one: neither dark nor bright has a chroma
-    marked = np.array([[skin_odds[chroma_bin(*bgr)] > 0.0 for bgr in row] for row in picture])
+    skin_odds = np.append(colours.skin_odds, -1.0)  # the last one: of what is too dark to tell
+    marked = (skin_odds[chroma_bins(picture.reshape(-1, 3))] > 0.0).reshape(picture.shape[:2])
     assert marked[60:75, 70:90].mean() > 0.95
     assert marked[20:90, :40].mean() < 0.05
     assert marked[110:150, 50:110].mean() < 0.05
