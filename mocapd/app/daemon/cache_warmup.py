@@ -1,19 +1,17 @@
 """Warms up the caches of a first start in child processes, as only their end frees the memory of compiling."""
 
 import logging
-import multiprocessing
 import os
-import signal
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
+from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import TYPE_CHECKING
 
-from mocapd.child_process import end_with_parent
-from mocapd.errors import MocapdError
+from mocapd.app.daemon.forked_child import forked
 from mocapd.file_lock import one_at_a_time
 from mocapd.session.prepared_marker import LOCK, is_prepared, remember
 
@@ -98,17 +96,10 @@ def prepare_in_background(config: "Config") -> Iterator[Preparation]:
         return
     import mocapd.session.session  # noqa: F401  imported once for all children
 
-    fork = multiprocessing.get_context("fork")
-    here, there = fork.Pipe(duplex=False)
-    child = fork.Process(target=_work, args=(prepare_in_processes, config, there.send))
-    child.start()
-    there.close()
-    try:
+    here, there = Pipe(duplex=False)
+    with here, forked(prepare_in_processes, config, there.send) as child:
+        there.close()
         yield Preparation(child, here)
-    finally:
-        child.kill()
-        child.join()
-        here.close()
 
 
 def prepare_in_processes(config: "Config", report: Report = _quiet) -> None:
@@ -198,46 +189,18 @@ def database_in_background(config: "Config") -> Iterator[None]:
     if is_prepared(config, _DATABASE) and has_caches(config.tracker.name, config.cache_dir):
         yield
         return
-    child = multiprocessing.get_context("fork").Process(
-        target=_work, args=(_make_database_quietly, config)
-    )
-    child.start()
-    try:
+    with forked(_make_database_quietly, config):
         yield
-    finally:
-        child.kill()
-        child.join()
 
 
 def _all_succeed(config: "Config", works: Sequence[Callable[["Config"], None]]) -> bool:
     """Runs each work in a child process; True if all succeed."""
-    fork = multiprocessing.get_context("fork")
-    children = [fork.Process(target=_work, args=(work, config)) for work in works]
-    try:
-        for child in children:
-            child.start()
-        for child in children:
+    with ExitStack() as stack:
+        for child in [stack.enter_context(forked(work, config)) for work in works]:
             child.join()
             if child.exitcode != 0:
                 return False
-        return True
-    finally:
-        for child in children:
-            if child.pid is not None:
-                child.kill()
-
-
-def _work(work: Callable[..., None], *arguments: object) -> None:
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    assert parent.pid is not None
-    end_with_parent(parent.pid, signal.SIGKILL)
-    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
-        signal.signal(number, signal.SIG_DFL)
-    try:
-        work(*arguments)
-    except MocapdError:
-        os._exit(1)
+    return True
 
 
 def _make_film(config: "Config") -> None:

@@ -1,17 +1,15 @@
 """Runs a graph of tasks in a few parallel processes, and estimates the progress."""
 
 import gc
-import multiprocessing
 import os
-import signal
 import time
 from collections.abc import Callable, Sequence
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
+from multiprocessing import Pipe
 from multiprocessing.connection import Connection, wait
-from multiprocessing.process import BaseProcess
 
-from mocapd.child_process import end_with_parent
-from mocapd.errors import MocapdError
+from mocapd.app.daemon.forked_child import forked
 
 Share = Callable[[float], None]  # reports the done share of a task, 0..1
 
@@ -47,7 +45,6 @@ class Progress:
 
 @dataclass(slots=True)
 class _Worker:
-    process: BaseProcess
     pipe: Connection
     task: int = -1
     began_s: float = 0.0
@@ -87,15 +84,13 @@ def run_tasks(
     pace: initial estimate of this machine's processor time relative to `Task.seconds`; by the clock it takes longer where
     other programs are busy or a quota holds, which the processes measure first.
     """
-    fork = multiprocessing.get_context("fork")
     way_s, workers = _ways(tasks), list[_Worker]()
-    try:
+    with ExitStack() as children:
         for _ in range(min(processes, len(tasks))):
-            here, there = fork.Pipe()
-            child = fork.Process(target=_work, args=(there, tasks))
-            child.start()
+            here, there = Pipe()
+            children.enter_context(forked(_work, there, tasks))
             there.close()
-            workers.append(_Worker(child, here))
+            workers.append(_Worker(here))
         try:
             received = [float(worker.pipe.recv()) for worker in workers]
         except EOFError:
@@ -114,10 +109,6 @@ def run_tasks(
                     return False
             report(_progress(workers, state, way_s, processes))
         return True
-    finally:
-        for worker in workers:
-            worker.process.kill()
-            worker.process.join()
 
 
 def _ways(tasks: Sequence[Task]) -> list[float]:
@@ -193,16 +184,10 @@ def _processor_share() -> float:
 
 
 def _work(pipe: Connection, tasks: Sequence[Task]) -> None:
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    assert parent.pid is not None
-    end_with_parent(parent.pid, signal.SIGKILL)
-    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
-        signal.signal(number, signal.SIG_DFL)
     # It ends within a minute or two; until then what numba leaves (some 400 MB, all processes together) is not worth
     # looking for: a tenth of all compiling.
     gc.disable()
-    try:
+    with suppress(EOFError):
         pipe.send(_processor_share())
         niced = False
         while True:
@@ -212,5 +197,3 @@ def _work(pipe: Connection, tasks: Sequence[Task]) -> None:
                 niced = True
             task.work(pipe.send)
             pipe.send(None)
-    except (EOFError, MocapdError):
-        os._exit(1)
