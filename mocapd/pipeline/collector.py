@@ -48,9 +48,9 @@ class FrameCollector:
         self._closed = False
 
     def put(self, frame: Frame) -> None:
-        """Add a frame; never blocks. Raises KeyError for an unknown camera."""
+        """Add a frame; never blocks. Frames of other cameras of a hub are ignored."""
         with self._changed:
-            if self._closed:
+            if self._closed or frame.camera not in self._rates:
                 return
             deadline_ns = self._bundler.deadline_ns
             now_ns = self._clock()

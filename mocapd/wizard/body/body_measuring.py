@@ -13,12 +13,12 @@ from mocapd.calibrate.body_shape.body_shape_fit import fit_shape
 from mocapd.clock import monotonic_ns, seconds
 from mocapd.config.sections import TrackerSection
 from mocapd.errors import InputError
+from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.session.tracker_setup import ReadyTracker, cache_resources, ready_tracker
 from mocapd.trackers.registry import shirt_tracker
 from mocapd.types import BodyState, Bytes, Rig, Skeleton
 from mocapd.wizard.body.measured_body import body_picture
-from mocapd.wizard.camera_collector import CameraCollector
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.saving import calibration_of
 from mocapd.wizard.step import Tell
@@ -130,7 +130,7 @@ def _watch(
 ) -> bool:
     """Track the hub's frames until there are enough observations; False when stopped. Raises InputError."""
     tracker, shape = ready.tracker, ready.shape
-    collector = CameraCollector(hub, rig.names)
+    collector = FrameCollector(rig.names, hub.bundler)
     hub.join(collector)
     try:
         while observations.share < 1.0:

@@ -9,6 +9,7 @@ from mocapd.body.shape import BodyShape, skeleton_of
 from mocapd.calibrate.verification.check_measure import Measure, MeasuringTracker
 from mocapd.calibration.calibration_record import Calibration
 from mocapd.pipeline.bundler import CameraCounts
+from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.pipeline.loop import OnDeath, PipelineLoop
 from mocapd.pipeline.metrics import Metrics
@@ -18,7 +19,6 @@ from mocapd.trackers.registry import entry, measuring_tracker
 from mocapd.tracking.base import Tracker
 from mocapd.tracking.tracker_inputs import wearer_shape
 from mocapd.types import Rig
-from mocapd.wizard.camera_collector import CameraCollector
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.newest_body import NewestBody
 from mocapd.wizard.step import Tell
@@ -83,7 +83,7 @@ class CheckTracking:
     ) -> None:
         self.rig = prepared.rig
         self._hub, self._prepared, self._shown = hub, prepared, shown
-        self._collector = CameraCollector(hub, prepared.rig.names)
+        self._collector = FrameCollector(prepared.rig.names, hub.bundler)
         smoother = Smoother(smoothing, skeleton_of(prepared.shape))
         self._loop = PipelineLoop(
             self._collector, prepared.tracker, prepared.shape, smoother, shown.bodies, died

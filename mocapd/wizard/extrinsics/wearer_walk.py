@@ -14,10 +14,10 @@ from mocapd.calibration.calibration_record import ShirtColours
 from mocapd.clock import monotonic_ns, nanoseconds
 from mocapd.errors import InputError
 from mocapd.geometry.camera_model import from_camera
+from mocapd.pipeline.collector import FrameCollector
 from mocapd.pipeline.frame_hub import FrameHub
 from mocapd.shirt.colour.from_pictures import colour_model, white_balances
 from mocapd.types import Camera, Floats, Rig
-from mocapd.wizard.camera_collector import CameraCollector
 from mocapd.wizard.colour.stroke_proposals import LoadDatabase
 from mocapd.wizard.draft import Draft
 from mocapd.wizard.saving import calibration_of
@@ -95,7 +95,7 @@ def _follow(
     params: WalkParams,
 ) -> bool:
     """Track the hub's frames until there is enough; False when stopped. Raises InputError."""
-    collector = CameraCollector(hub, [camera.name for camera in tracks.cameras])
+    collector = FrameCollector([camera.name for camera in tracks.cameras], hub.bundler)
     give_up_ns = monotonic_ns() + nanoseconds(params.patience_s)
     hub.join(collector)
     try:
