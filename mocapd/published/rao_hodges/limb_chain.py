@@ -7,7 +7,7 @@ positive where it bends.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -47,12 +47,25 @@ class ChainArrays(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Segment:
+    """One ellipsoid, whose parts are those of `ChainArrays`; dofs: the kind and the axis of each of its angles."""
+
+    bone: str
+    parent: int
+    joint_m: Floats
+    dofs: tuple[tuple[str, Floats], ...]
+    centre_m: Floats
+    radii_m: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class LimbChain:
     """One or several limbs that share a root. bones (E,): the bone of each ellipsoid's rotation; kinds (D,): the angle's
     name in the tables of `limb_motion`, without its side; mirrored (D,): on the right side, where angles about y and z
     have the opposite sign."""
 
     name: str
+    segments: tuple[Segment, ...]
     bones: tuple[str, ...]
     kinds: tuple[str, ...]
     mirrored: tuple[bool, ...]
@@ -64,21 +77,9 @@ class LimbChain:
         return len(self.kinds)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Segment:
-    bone: str
-    parent: int
-    joint_m: Floats
-    dofs: tuple[tuple[str, Floats], ...]
-    centre_m: Floats
-    radii_m: Floats
-
-
 def legs(skeleton: Skeleton, stature_m: float) -> LimbChain:
     """Both legs: six ellipsoids, ten angles. The root of every chain is the hips joint."""
-    return _chain(
-        "legs", [one for side in ("left", "right") for one in _leg(skeleton, side, stature_m)]
-    )
+    return _chain("legs", _joined([_leg(skeleton, side, stature_m) for side in ("left", "right")]))
 
 
 def arm(skeleton: Skeleton, stature_m: float, side: str) -> LimbChain:
@@ -93,45 +94,32 @@ def trunk(skeleton: Skeleton, stature_m: float) -> LimbChain:
 
 def whole_body(parts: Sequence[LimbChain]) -> LimbChain:
     """Chains of one root as one chain, with their angles concatenated."""
-    ellipsoids = np.cumsum([0, *(len(part.bones) for part in parts)])
-    dofs = np.cumsum([0, *(part.n_dof for part in parts)])
-    each = [part.arrays for part in parts]
-    parents = [
-        np.where(a.parents < 0, -1, a.parents + n) for a, n in zip(each, ellipsoids, strict=False)
-    ]
-    first = [a.first_dof[:-1] + n for a, n in zip(each, dofs, strict=False)]
-    return LimbChain(
-        "whole",
-        tuple(bone for part in parts for bone in part.bones),
-        tuple(kind for part in parts for kind in part.kinds),
-        tuple(one for part in parts for one in part.mirrored),
-        ChainArrays(
-            np.concatenate(parents),
-            np.concatenate([a.joints_m for a in each]),
-            np.concatenate([*first, dofs[-1:]]),
-            np.concatenate([a.axes for a in each]),
-            np.concatenate([a.centres_m for a in each]),
-            np.concatenate([a.radii_m for a in each]),
-        ),
-    )
+    return _chain("whole", _joined([part.segments for part in parts]))
 
 
-def _leg(skeleton: Skeleton, side: str, h: float) -> list[_Segment]:
+def _joined(parts: Sequence[Sequence[Segment]]) -> list[Segment]:
+    out: list[Segment] = []
+    for part in parts:
+        first = len(out)
+        out += [replace(s, parent=s.parent + first) if s.parent >= 0 else s for s in part]
+    return out
+
+
+def _leg(skeleton: Skeleton, side: str, h: float) -> list[Segment]:
     hips, hip, knee, ankle = (
         skeleton.rest_m[INDEX[bone]] for bone in ("hips", *(side + bone for bone in LEG_BONES))
     )
-    first = 0 if side == "left" else 3
     thigh = (("hip_z", _Z), ("hip_y", _Y), ("hip_x", _X))
     return [
-        _Segment(side + "UpperLeg", -1, hip - hips, thigh, 0.5 * (knee - hip), _vertical_radii(hip - knee, _THIGH, h)),
-        _Segment(side + "LowerLeg", first, knee - hip, (("knee_x", _X),), 0.5 * (ankle - knee),
-                 _vertical_radii(knee - ankle, _SHANK, h)),
-        _Segment(side + "Foot", first + 1, ankle - knee, (("ankle_x", _X),), np.array(_FOOT_CENTRE) * h,
-                 np.array(_FOOT) * h),
+        Segment(side + "UpperLeg", -1, hip - hips, thigh, 0.5 * (knee - hip), _vertical_radii(hip - knee, _THIGH, h)),
+        Segment(side + "LowerLeg", 0, knee - hip, (("knee_x", _X),), 0.5 * (ankle - knee),
+                _vertical_radii(knee - ankle, _SHANK, h)),
+        Segment(side + "Foot", 1, ankle - knee, (("ankle_x", _X),), np.array(_FOOT_CENTRE) * h,
+                np.array(_FOOT) * h),
     ]  # fmt: skip
 
 
-def _trunk(skeleton: Skeleton, h: float) -> list[_Segment]:
+def _trunk(skeleton: Skeleton, h: float) -> list[Segment]:
     hips, neck, head = (skeleton.rest_m[INDEX[bone]] for bone in ("hips", "neck", "head"))
     spots = (
         ("hips", hips + _ABDOMEN_UP * (neck - hips), _ABDOMEN),
@@ -139,7 +127,7 @@ def _trunk(skeleton: Skeleton, h: float) -> list[_Segment]:
         ("head", head + np.array(_HEAD_FROM_JOINT) * h, _HEAD),
     )
     return [
-        _Segment(bone, -1, np.zeros(3), (), middle - hips, np.array(radii) * h)
+        Segment(bone, -1, np.zeros(3), (), middle - hips, np.array(radii) * h)
         for bone, middle, radii in spots
     ]
 
@@ -149,21 +137,21 @@ def _vertical_radii(bone_m: Floats, half: tuple[float, float], h: float) -> Floa
     return np.array([half[0] * h, along, half[1] * h])
 
 
-def _arm(skeleton: Skeleton, side: str, h: float) -> list[_Segment]:
+def _arm(skeleton: Skeleton, side: str, h: float) -> list[Segment]:
     shoulder, elbow, wrist = (skeleton.rest_m[INDEX[side + bone]] for bone in (*ARM_BONES, "Hand"))
     upper, fore = float(np.linalg.norm(elbow - shoulder)), float(np.linalg.norm(wrist - elbow))
     out = 1.0 if side == "left" else -1.0
     turns = (("shoulder_x", _X), ("shoulder_y", _Y), ("shoulder_z", _Z))
     reach = 0.5 * (fore + _HAND_LENGTH * h)
     return [
-        _Segment(side + "UpperArm", -1, shoulder - skeleton.rest_m[0], turns, 0.5 * (elbow - shoulder),
-                 np.array([0.5 * _OVERLAP * upper, _UPPER_ARM[0] * h, _UPPER_ARM[1] * h])),
-        _Segment(side + "LowerArm", 0, elbow - shoulder, (("elbow", -out * _Y),), (wrist - elbow) * (reach / fore),
-                 np.array([reach, _FOREARM[0] * h, _FOREARM[1] * h])),
+        Segment(side + "UpperArm", -1, shoulder - skeleton.rest_m[0], turns, 0.5 * (elbow - shoulder),
+                np.array([0.5 * _OVERLAP * upper, _UPPER_ARM[0] * h, _UPPER_ARM[1] * h])),
+        Segment(side + "LowerArm", 0, elbow - shoulder, (("elbow", -out * _Y),), (wrist - elbow) * (reach / fore),
+                np.array([reach, _FOREARM[0] * h, _FOREARM[1] * h])),
     ]  # fmt: skip
 
 
-def _chain(name: str, segments: list[_Segment]) -> LimbChain:
+def _chain(name: str, segments: list[Segment]) -> LimbChain:
     dofs = [(segment.bone, kind) for segment in segments for kind, _ in segment.dofs]
     arrays = ChainArrays(
         np.array([segment.parent for segment in segments], np.int64),
@@ -175,4 +163,5 @@ def _chain(name: str, segments: list[_Segment]) -> LimbChain:
     )
     kinds = tuple(kind for _, kind in dofs)
     mirrored = tuple(bone.startswith("right") and kind[-2:] in ("_y", "_z") for bone, kind in dofs)
-    return LimbChain(name, tuple(segment.bone for segment in segments), kinds, mirrored, arrays)
+    bones = tuple(segment.bone for segment in segments)
+    return LimbChain(name, tuple(segments), bones, kinds, mirrored, arrays)
