@@ -36,4 +36,4 @@ def prepare(config: ConfigOption = None, settings: SetOption = None) -> None:
             str(effective.cache_dir),
             "see what `mocapd run` says",
         )
-    print("prepared: the next start takes seconds")
+    print("prepared: `mocapd run` starts in seconds; a first `mocapd demo` also renders its film")
