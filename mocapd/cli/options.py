@@ -101,8 +101,8 @@ def effective_config(
 def config_to_look_after(
     config: Path | None, settings: list[str] | None
 ) -> "tuple[Effective, MocapdError | None]":
-    """The configuration, for commands that control a running daemon even if its config file has become invalid: then the
-    defaults with these flags, and the error. Raises ConfigError or UsageError for wrong flags."""
+    """The configuration, for commands that control a running daemon or need only the log level, even if the config file
+    has become invalid: then the defaults with these flags, and the error. Raises ConfigError or UsageError for flags."""
     from mocapd.config.effective import load_config
 
     try:

@@ -1,6 +1,6 @@
 """`mocapd web-link`"""
 
-from mocapd.cli.options import ConfigOption, SetOption, effective_config
+from mocapd.cli.options import ConfigOption, SetOption, config_to_look_after
 from mocapd.errors import ConfigError
 
 
@@ -16,7 +16,7 @@ def web_link(config: ConfigOption = None, settings: SetOption = None) -> None:
     from mocapd.app.setup.chosen_page import target_page
     from mocapd.web.games.frames_access import FramesAccess
 
-    daemon = target_page(effective_config(config, settings))
+    daemon = target_page(config_to_look_after(config, settings)[0])
     if not daemon.status.origins:
         raise ConfigError(
             "the running mocapd allows no site",

@@ -29,8 +29,10 @@ def test_it_prints_one_address_for_each_site(
     with WebServer(host, Params(), lambda error: None, place), pytest.raises(ConfigError):
         web_link()
     params = Params(allow_origins=(SITE, "https://game.example"))
+    broken = tmp_path / "config.toml"
+    broken.write_text("nonsense = 1\n")
     with WebServer(host, params, lambda error: None, place) as server:
-        web_link()
+        web_link(broken)  # the daemon runs on what it read before
     first, second = capsys.readouterr().out.splitlines()
     assert first.startswith(f"{SITE}/#mocapd=ws://127.0.0.1:{server.port}/frames?key=")
     assert second.startswith("https://game.example/#mocapd=ws://")

@@ -168,3 +168,15 @@ def test_the_command(tmp_path: Path, clean_env: dict[str, str]) -> None:
     assert "30 frames at 60 Hz" in done.err
     assert (tmp_path / "a.glb").read_bytes()[:4] == b"glTF"
     assert mocapd_here(clean_env, "export", path, "--to", "fbx").code == 2
+
+
+def test_the_command_needs_no_valid_configuration(
+    tmp_path: Path, clean_env: dict[str, str]
+) -> None:
+    path = record(tmp_path / "a.mcap", frames(0.5))
+    broken = tmp_path / "config.toml"
+    broken.write_text("nonsense = 1\n")
+    done = mocapd_here(clean_env | {"MOCAPD_CONFIG": str(broken)}, "export", path, "--to", "glb")
+    assert done.code == 0
+    assert f"the configuration is left out: {broken}:1" in done.err
+    assert (tmp_path / "a.glb").read_bytes()[:4] == b"glTF"

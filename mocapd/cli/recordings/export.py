@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from mocapd.cli.options import ConfigOption, ForceOption, SetOption, effective_config
+from mocapd.cli.options import ConfigOption, ForceOption, SetOption, config_to_look_after
 
 ExportTo = StrEnum("ExportTo", ["bvh", "glb", "vrma", "csv", "trc", "c3d"])
 Up = StrEnum("Up", ["y", "z"])
@@ -60,7 +60,10 @@ def export(
 
     options = ExportOptions(up.value == "z", legs.value == "all", feet.value == "floor")
     check_options(to, options)
-    set_up_logs(effective_config(config, settings).config.log_level)
+    effective, error = config_to_look_after(config, settings)  # for the level of the log alone
+    if error is not None:
+        typer.echo(f"mocapd: the configuration is left out: {error}", err=True)
+    set_up_logs(effective.config.log_level)
     path = out if out is not None else file.parent / f"{file.stem}.{to}"
     target = export_file(to, path, force, inputs=(file,))
     target.check()
