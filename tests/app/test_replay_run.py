@@ -96,7 +96,9 @@ def test_from_a_moment_and_faster(tmp_path: Path) -> None:
     assert any(isinstance(one, RestSkeleton) for one in found.states)  # told before that moment
 
 
-def test_a_step_back_of_the_clock_is_no_pause(tmp_path: Path) -> None:
+def test_a_step_back_of_the_clock_is_no_pause(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     first, *others = frames(0.1)
     jumped = [
         msgspec.structs.replace(one, publish_monotonic_ns=one.publish_monotonic_ns - 3 * NS_PER_S)
@@ -104,6 +106,7 @@ def test_a_step_back_of_the_clock_is_no_pause(tmp_path: Path) -> None:
     ]
     found = played(record(tmp_path / "a.mcap", [first, *jumped]), ReplayParams(speed=10.0))
     assert len(found.frames) == 6
+    assert caplog.messages == ["a step back of the clock of 3 s in the recording is left out"]
 
 
 def test_beyond_the_end_is_named(tmp_path: Path) -> None:

@@ -150,5 +150,6 @@ def _step_ns(before: SkeletonFrame | None, frame: SkeletonFrame) -> int:
     step_ns = frame.publish_monotonic_ns - before.publish_monotonic_ns
     if 0 <= step_ns <= LONGEST_PAUSE_NS:
         return step_ns
-    _log.warning("a pause of %.0f s in the recording is left out", step_ns / NS_PER_S)
+    what = "pause" if step_ns > 0 else "step back of the clock"
+    _log.warning("a %s of %.0f s in the recording is left out", what, abs(step_ns) / NS_PER_S)
     return 0
