@@ -1,5 +1,6 @@
 """A recording gives back what was recorded, whatever happened to the file."""
 
+import errno
 import logging
 import math
 import os
@@ -300,7 +301,19 @@ def test_a_disk_that_is_full_is_named(tmp_path: Path) -> None:
     writer.add_state(rest(), 0)
     for frame in frames(0.1):
         writer.frame(frame)
-    with pytest.raises(CannotCreateError, match="any further"):
+    with pytest.raises(CannotCreateError, match=r"any further.*make room.*can be read"):
+        writer.flush_if_due(10**12)
+
+
+def test_a_disk_that_fails_is_not_called_full(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_descriptor: int) -> None:
+        raise OSError(errno.EIO, os.strerror(errno.EIO))
+
+    writer = RecordingWriter(tmp_path / "a.mcap", RecordingParams(), 0)
+    monkeypatch.setattr(os, "fdatasync", fail)
+    with pytest.raises(CannotCreateError, match=r"any further.*check that disk.*can be read"):
         writer.flush_if_due(10**12)
 
 

@@ -24,7 +24,7 @@ from mocapd.capture.recording.recorded_picture import (
 )
 from mocapd.capture.recording.recording_metadata import RecordingMetadata, attachments_of
 from mocapd.clock import NS_PER_S
-from mocapd.errors import CannotCreateError, creation_errors
+from mocapd.errors import CannotCreateError, creation_errors, mend_of
 from mocapd.output_file import OutputFile, kind_by_magic
 from mocapd.outputs import schemas, wire
 from mocapd.outputs.mcap import foxglove_messages, foxglove_scene
@@ -217,14 +217,14 @@ class RecordingWriter:
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
-        """Turns an OSError, such as of a full disk, into a CannotCreateError with the path."""
+        """Turns an OSError, such as of a full disk or one that was pulled, into a CannotCreateError with the path."""
         try:
             yield
         except OSError as error:
             raise CannotCreateError(
                 f"cannot be written any further ({error.strerror})",
                 str(self.path),
-                "make room; what was written before can be read",
+                f"{mend_of(error, 'check that disk')}; what was written before can be read",
             ) from None
 
 
