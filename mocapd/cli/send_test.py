@@ -27,13 +27,13 @@ def send_test_command(
     """Send a waving and stepping person to an output, without cameras: to test firewall and avatar.
 
     Exit code: 0 if a program listens, 1 if none does. Other machines may not report the latter.
-    With Zenoh, --port is the port for games to connect to, and --host the address of a router to join.
+    With Zenoh, --port is the port for games to connect to, and --host the address of a router to join, by the protocol of
+    zenoh.connect.
 
     Example: mocapd send-test --output vrchat --host 192.168.1.20
     """
     from mocapd.app.libraries import prepare_libraries
     from mocapd.app.terminal.logs import set_up_logs
-    from mocapd.outputs.address_override import resolve_host
     from mocapd.outputs.instance import instance_name
     from mocapd.outputs.output_table import OUTPUTS
 
@@ -46,9 +46,7 @@ def send_test_command(
     prepare_libraries(effective.cache_dir)
     entry, section = OUTPUTS[output], effective.outputs[output]
     if host is not None or port is not None:
-        section = entry.override_address(
-            section, None if host is None else resolve_host(host), port
-        )
+        section = entry.override_address(section, host, port)
 
     from mocapd.app.terminal.send_test_run import send_test
 

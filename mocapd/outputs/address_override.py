@@ -11,7 +11,8 @@ from mocapd.errors import UnavailableError, UsageError
 def override_destination(section: Any, host: str | None, port: int | None) -> Any:
     """The section with one destination. For sections with a key `destination` or `destinations` (`address:port`).
 
-    A host or port of None keeps the section's value, or else the default. Raises UsageError for any other section.
+    A host or port of None keeps the section's value, or else the default. Raises UsageError for any other section, and
+    UnavailableError for a name without an address.
     """
     names = {field.name for field in fields(section)}
     key = next((name for name in ("destination", "destinations") if name in names), None)
@@ -22,8 +23,7 @@ def override_destination(section: Any, host: str | None, port: int | None) -> An
             "use --set and its own keys",
         )
     old_host, _, old_port = _first_address(getattr(section, key), getattr(type(section)(), key))
-    if host is None:
-        host = old_host.removeprefix("[").removesuffix("]")
+    host = old_host.strip("[]") if host is None else resolve_host(host)
     address = address_text(host, int(old_port) if port is None else port)
     return replace(section, **{key: address if key == "destination" else (address,)})
 

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any, Protocol
 
 from mocapd.errors import ConfigError
-from mocapd.outputs.address_override import address_text, override_destination
+from mocapd.outputs.address_override import address_text, override_destination, resolve_host
 from mocapd.outputs.base import Sink
 from mocapd.outputs.osc import osc_sink
 from mocapd.outputs.prediction.predicted_sink import PredictedSink
@@ -99,7 +99,7 @@ class OutputEntry:
     """`section`: its settings; `build`: makes the sink from its section and the daemon's name, importing it then.
 
     `unsafe`: one warning for each permitted but unsafe setting. `override_address`: the section with another host
-    (numeric) and port, None: unchanged. `limit_hz`: the output's own highest rate [Hz]. `uses_facing`: True if it
+    (address or name) and port, None: unchanged. `limit_hz`: the output's own highest rate [Hz]. `uses_facing`: True if it
     uses the forward direction of `mocapd recenter`.
     """
 
@@ -118,11 +118,18 @@ def _zenoh(section: ZenohSection, instance: str) -> Sink:
 
 
 def _override_zenoh(section: ZenohSection, host: str | None, port: int | None) -> ZenohSection:
-    """With a host: join its router. Without: listen on this machine."""
-    number = section.port if port is None else port
+    """With a host: join its router, by the protocol and port of the configured one. Without: listen on this machine.
+
+    Raises UnavailableError for a name without an address; any other stays a name, as a certificate is for one.
+    """
     if host is None:
+        number = section.port if port is None else port
         return replace(section, port=number, listen=(), connect=())
-    return replace(section, listen=(), connect=(f"tcp/{address_text(host, number)}",))
+    resolve_host(host)
+    configured = (*section.connect, f"tcp/:{section.port}")[0]
+    protocol, _, address = zenoh_config.without_options(configured).partition("/")
+    number = int(address.rpartition(":")[2]) if port is None else port
+    return replace(section, listen=(), connect=(f"{protocol}/{address_text(host, number)}",))
 
 
 def _osc(section: OscSection, _instance: str) -> Sink:

@@ -217,6 +217,8 @@ def test_what_cannot_be_is_a_named_error(code_of: Command, monkeypatch: pytest.M
     monkeypatch.setattr(socket, "getaddrinfo", unknown)
     with pytest.raises(UnavailableError, match=r"--host.*'quest'.*not known"):
         code_of(output="vrchat", host="quest")
+    with pytest.raises(UnavailableError, match=r"--host.*'quest'.*not known"):
+        code_of(output="zenoh", host="quest")
 
 
 def test_a_name_is_looked_up_once_and_ipv4_preferred(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -242,6 +244,13 @@ def test_a_name_is_looked_up_once_and_ipv4_preferred(monkeypatch: pytest.MonkeyP
         ("vrchat", VRChatSection(), "fd00::7", 9, {"destination": "[fd00::7]:9"}),
         ("zenoh", ZenohSection(connect=("tcp/1.2.3.4:1",)), None, 5, {"port": 5, "connect": ()}),
         ("zenoh", ZenohSection(), "10.0.0.2", None, {"connect": ("tcp/10.0.0.2:7447",)}),
+        (
+            "zenoh",
+            ZenohSection(connect=("tls/hub:7450#iface=eth0", "tcp/hub:7447")),
+            "localhost",  # not its address: its certificate is for the name
+            None,
+            {"connect": ("tls/localhost:7450",)},
+        ),
         (
             "zenoh",
             ZenohSection(listen=("tcp/127.0.0.1:1",)),
