@@ -175,6 +175,29 @@ def test_into_a_toml_file_it_writes_a_calibration_with_the_colours(
     assert lens.views >= 9
 
 
+def test_the_saved_rate_is_that_of_the_recording_or_the_configuration(
+    clean_env: dict[str, str], pictures: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "films").mkdir()
+    for name in ("cam0", "cam1"):
+        codec = cv2.VideoWriter.fourcc(*"MJPG")
+        video = cv2.VideoWriter(str(tmp_path / "films" / f"{name}.avi"), codec, 15.0, SIZE_PX)
+        for path in sorted((pictures / name).iterdir()):
+            video.write(np.asarray(cv2.imread(str(path))))
+        video.release()
+    config = tmp_path / "mocapd.toml"
+    config.write_text('[[camera]]\nid = "cam1"\nsource = "/dev/video7"\nfps_hz = 25\n')
+    out = tmp_path / "state" / "calibration.toml"
+    out.parent.mkdir()
+    outcome = calibrate(clean_env, tmp_path / "films", out, "--config", str(config))
+    assert outcome.code == 0, outcome.err
+    saved = load_calibration(out).tables.camera
+    assert [(one.source, one.fps_hz) for one in saved] == [
+        (str(tmp_path / "films" / "cam0.avi"), 15.0),
+        ("/dev/video7", 25.0),
+    ]
+
+
 def write_strokes(path: Path, size_px: tuple[int, int], colours: int) -> None:
     """A picture with patches of the shirt's colours, and a stroke on each of the first of them."""
     path.parent.mkdir(exist_ok=True)

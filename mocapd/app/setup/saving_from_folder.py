@@ -48,14 +48,19 @@ def save_from_folder(
     pictures: Mapping[str, LabelledPicture],
     cameras: tuple[CameraSection, ...],
 ) -> None:
-    """Writes the file. cameras: of the configuration; a camera's source is the configured one of the same id, else its
-    recording. Raises CannotCreateError."""
+    """Writes the file. cameras: of the configuration; a camera's source and rate are the configured ones of the same id, else
+    those of its recording. Raises CannotCreateError."""
     sources = {r.name: str(r.path.absolute()) for r in find_recordings(recordings)}
     sources |= {camera.id: camera.source for camera in cameras}
+    rates_hz = {name: round(report.rate_hz, 3) for name, report in result.cameras.items()}
+    rates_hz |= {camera.id: camera.fps_hz for camera in cameras if camera.fps_hz is not None}
     area = result.play_area
     W = white_balances(pictures, colour_model(()))
     draft = Draft(
-        cameras=tuple(DraftCamera(c.name, sources[c.name], c.size_px) for c in result.rig.cameras),
+        cameras=tuple(
+            DraftCamera(c.name, sources[c.name], c.size_px, rates_hz[c.name])
+            for c in result.rig.cameras
+        ),
         board=result.board,
         intrinsics={c.name: _lens(c, result.cameras[c.name]) for c in result.rig.cameras},
         rig=result.rig,

@@ -51,7 +51,7 @@ class FolderParams:
 class CameraReport:
     """One camera: `fit` in the joint solution, `held_out_px` of its intrinsics; `backs` of the pictures show the board's
     back, `no_board` of them no board. `delay_frames`: how much later than the first camera it exposes pictures of one stamp,
-    at first where frames are lost."""
+    at first where frames are lost; `rate_hz`: of its recording, pictures counted at a usual one."""
 
     fit: CameraFit
     held_out_px: float
@@ -60,6 +60,7 @@ class CameraReport:
     no_board: int
     covered: float
     delay_frames: float
+    rate_hz: float
     refused_views: tuple[int, ...]
 
 
@@ -200,7 +201,8 @@ def _solve_rig(
     for name, sighting in named.items():
         fit = made.cameras[name]
         delay_frames = aligned.delay_frames(name, next(iter(named)), fit.delay_frames)
-        reports[name] = _report(sighting, intrinsics_of[name], fit, delay_frames)
+        rate_hz = 1.0 / clocks[name].period_s
+        reports[name] = _report(sighting, intrinsics_of[name], fit, delay_frames, rate_hz)
     return FolderCalibration(
         made.rig,
         made.rms_px,
@@ -259,7 +261,11 @@ def _floor_instant(instants: Instants, floor_frame: int) -> int:
 
 
 def _report(
-    one: BoardSighting, intrinsics: Intrinsics, fit: CameraFit, delay_frames: float
+    one: BoardSighting,
+    intrinsics: Intrinsics,
+    fit: CameraFit,
+    delay_frames: float,
+    rate_hz: float,
 ) -> CameraReport:
     return CameraReport(
         fit,
@@ -269,5 +275,6 @@ def _report(
         one.pictures - len(one.views),
         covered_share(list(one.views.values()), one.recording.size_px),
         delay_frames,
+        rate_hz,
         intrinsics.thrown_out,
     )
