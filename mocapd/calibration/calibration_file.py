@@ -20,12 +20,13 @@ from mocapd.capture.origin import Origin
 from mocapd.errors import ConfigError, InputError, MalformedError, NewerFileError
 from mocapd.shirt.colour.model_pictures import personal_model
 from mocapd.shirt.colour.strokes import read_labelled
+from mocapd.user_command import user_command
 
 FILE_NAME = "calibration.toml"
 MOST_SETUP_BYTES = 2_000_000  # a picture of the board takes 0.5 to 2 kB
 
 _MOST_BYTES = 256_000  # a camera takes 1 kB
-_RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
+RECALIBRATE = f"calibrate again (`{user_command('calibrate')}`), or restore the file"
 _log = logging.getLogger(__name__)
 
 
@@ -114,12 +115,14 @@ def read_calibration(path: Path) -> SavedCalibration:
     try:
         saved = read_tables(path)
     except MissingError:
-        raise InputError("no such calibration", str(path), "make one: `mocapd calibrate`") from None
+        raise InputError(
+            "no such calibration", str(path), f"make one: `{user_command('calibrate')}`"
+        ) from None
     if not saved.is_placed:
         raise ConfigError(
             "the setup is not finished: it does not say where the cameras are",
             str(path),
-            "finish it: `mocapd calibrate`",
+            f"finish it: `{user_command('calibrate')}`",
         )
     return complete_sources(saved, path.parent)
 
@@ -134,7 +137,7 @@ def read_tables(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
     try:
         data = parse_toml(text)
     except MalformedError as error:
-        raise ConfigError(f"not valid TOML ({error.what})", where, _RECALIBRATE) from None
+        raise ConfigError(f"not valid TOML ({error.what})", where, RECALIBRATE) from None
     schema = data.get("schema")
     if schema != SCHEMA:
         problem = "has no 'schema'" if schema is None else f"has schema {brief(schema)}"
@@ -142,7 +145,7 @@ def read_tables(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
         raise (NewerFileError if newer else ConfigError)(
             f"{problem}, this mocapd reads schema {SCHEMA}",
             where,
-            "use the mocapd that wrote it, or calibrate again (`mocapd calibrate`)",
+            f"use the mocapd that wrote it, or calibrate again (`{user_command('calibrate')}`)",
         )
     try:
         check_numbers(data)
@@ -151,7 +154,7 @@ def read_tables(path: Path, most_bytes: int = _MOST_BYTES) -> SavedCalibration:
         what, _, key = error.what.partition(" - at ")
         named = key.strip("`").removeprefix("$").removeprefix(".")
         what = what[0].lower() + what[1:]
-        raise ConfigError(f"{named}: {what}" if named else what, where, _RECALIBRATE) from None
+        raise ConfigError(f"{named}: {what}" if named else what, where, RECALIBRATE) from None
     except ConfigError as error:  # the board's own check
         raise ConfigError(error.what, f"{where}, {error.where}", error.fix) from None
     ids = [camera.id for camera in saved.camera]

@@ -23,10 +23,12 @@ from mocapd.service.room_memory import RoomMemory
 from mocapd.service.thread_priority import watching
 from mocapd.service.view_watch import ViewWatch
 from mocapd.types import Bytes, Frame, Rig
+from mocapd.user_command import user_command
 
 _log = logging.getLogger(__name__)
 
 _LOOK_EVERY_S = 1.0
+_ROOM = "calibrate --step room"
 _SAVE_NS = 600 * NS_PER_S  # interval of saving the rooms of identical webcams for the next start
 
 
@@ -119,7 +121,7 @@ class CameraWatch:
             notices.insert(
                 0,
                 f"shows what {'another camera' if shown is None else repr(shown)} should -- put each camera where it was "
-                "calibrated, or run `mocapd calibrate --step room`",
+                f"calibrated, or run `{user_command(_ROOM)}`",
             )
         return "; ".join(notices)
 
@@ -183,8 +185,8 @@ class CameraWatch:
         if now is Mounting.BUMPED and before is not now:
             _log.warning(
                 "camera %r was turned by about %.1f degrees, its calibration no longer holds --"
-                " put it back, or run `mocapd calibrate --step room`",
-                *(name, bump.turn_deg),
+                " put it back, or run `%s`",
+                *(name, bump.turn_deg, user_command(_ROOM)),
             )
         elif before is Mounting.BUMPED and now is Mounting.STEADY:
             _log.info("camera %r is back in its place", name)
@@ -271,8 +273,8 @@ class CameraWatch:
             elif not self._is_doubted(first) and not self._is_doubted(second):
                 _log.warning(
                     "cameras %r and %r have changed places: each shows what the other's calibration is for --"
-                    " exchange them, or run `mocapd calibrate --step room`",
-                    *(first, second),
+                    " exchange them, or run `%s`",
+                    *(first, second, user_command(_ROOM)),
                 )
         if self._warned and not now:
             _log.info("no cameras are swapped any more")

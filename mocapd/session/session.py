@@ -36,6 +36,7 @@ from mocapd.shirt.colour.strokes import read_labelled
 from mocapd.trackers.registry import entry, require_calibration
 from mocapd.tracking.base import Tracker
 from mocapd.types import Rig
+from mocapd.user_command import user_command
 
 _log = logging.getLogger(__name__)
 
@@ -157,7 +158,7 @@ def session_cameras(
         raise ConfigError(
             "no camera is configured, and no calibration is saved",
             str(state_dir),
-            "set them up with `mocapd calibrate`; or add [[camera]] (see `mocapd cameras`), or "
+            f"set them up with `{user_command('calibrate')}`; or add [[camera]] (see `mocapd cameras`), or "
             "--camera ID=SOURCE",
         )
     place = str(saved.path.parent)

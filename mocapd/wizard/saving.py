@@ -18,6 +18,7 @@ from mocapd.calibrate.intrinsics.intrinsics import Intrinsics
 from mocapd.calibration.board_spec import BoardSpec
 from mocapd.calibration.calibration_file import (
     FILE_NAME,
+    RECALIBRATE,
     calibration_path,
     from_saved,
     read_calibration,
@@ -41,8 +42,6 @@ from mocapd.shirt.colour.model_pictures import personal_model
 from mocapd.types import Camera, LabelledPicture
 from mocapd.wizard.draft import Draft, DraftCamera, DraftColours, ExtrinsicsQuality
 from mocapd.wizard.step_names import StepName
-
-_RECALIBRATE = "calibrate again (`mocapd calibrate`), or restore the file"
 
 NOT_WRITTEN_YET = "-"  # pictures get their names at writing
 
@@ -247,7 +246,7 @@ def _intrinsics(saved: SavedCamera, placed: Camera | None, path: Path) -> Intrin
     K = fit.K if placed is None or fit.K is not None else placed.K
     dist = fit.dist if placed is None or fit.dist is not None else placed.dist
     if K is None or dist is None:
-        raise ConfigError("a lens without K and dist", f"{path}, camera {saved.id!r}", _RECALIBRATE)
+        raise ConfigError("a lens without K and dist", f"{path}, camera {saved.id!r}", RECALIBRATE)
     return Intrinsics(
         saved.size_px,
         np.array(K),
@@ -271,7 +270,7 @@ def _view(saved: SavedBoardView, board: BoardSpec | None, path: Path) -> BoardVi
         or ids[-1] >= columns * rows
         or (np.diff(ids) <= 0).any()
     ):
-        raise ConfigError("has a picture of another board", str(path), _RECALIBRATE)
+        raise ConfigError("has a picture of another board", str(path), RECALIBRATE)
     return BoardView(saved.index, ids, np.array(saved.corners_px), saved.sharpness, saved.back)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from mocapd.app.daemon.patient_imports import PatientImports
 from mocapd.app.terminal.own_command import own_command
 from mocapd.errors import MocapdError
+from mocapd.user_command import user_command
 
 if TYPE_CHECKING:
     from mocapd.service.service import Service, Snapshot
@@ -93,7 +94,8 @@ class DaemonPage:
             _log.warning("no page: %s", error)
             return
         self._server = server
-        _log.info("`%s calibrate` opens the page with the live view and the setup", own_command())
+        command = user_command("calibrate", own_command())
+        _log.info("`%s` opens the page with the live view and the setup", command)
 
     def _runs_on_saved(self) -> bool:
         """True if a new session would use the saved calibration."""

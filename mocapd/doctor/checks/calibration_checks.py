@@ -2,12 +2,13 @@
 
 from mocapd.doctor.facts import CalibrationFacts
 from mocapd.doctor.finding import Finding, bad, ok, warn
+from mocapd.user_command import user_command
 
 OLD_S = 180 * 86400.0  # in half a year mountings sink and lamps are changed
 POOR_PX = 1.5
 POOR_CM = 3.0
 
-_ROOM = "mocapd calibrate --step room"
+_ROOM = "calibrate --step room"
 
 
 def check_calibration(facts: CalibrationFacts) -> Finding:
@@ -16,7 +17,7 @@ def check_calibration(facts: CalibrationFacts) -> Finding:
     if facts.trouble is not None:
         return bad(about, f"{facts.path}: {facts.trouble.what}", facts.trouble.fix)
     if facts.path is None:
-        return warn(about, "none is saved", "mocapd calibrate")
+        return warn(about, "none is saved", user_command("calibrate"))
     days = int(facts.age_s / 86400.0)
     summary = (
         f"{facts.path}: {facts.cameras} camera{'s' if facts.cameras > 1 else ''}, {days} days old"
@@ -26,8 +27,8 @@ def check_calibration(facts: CalibrationFacts) -> Finding:
     if facts.age_s < -86400.0:
         return warn(about, f"{facts.path} is of the future", "set the clock: timedatectl")
     if (facts.rms_px or 0.0) > POOR_PX or (facts.play_area_cm or 0.0) > POOR_CM:
-        return warn(about, f"{summary}: it fits badly", _ROOM)
+        return warn(about, f"{summary}: it fits badly", user_command(_ROOM))
     if facts.age_s > OLD_S:
-        fix = f"{_ROOM}, and --step colour if the lamps changed"
+        fix = f"{user_command(_ROOM)}, and --step colour if the lamps changed"
         return warn(about, f"{summary}: it is old", fix)
     return ok(about, summary)
