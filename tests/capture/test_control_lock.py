@@ -126,7 +126,7 @@ def test_what_was_not_applied_shows() -> None:
 
 def test_nothing_is_touched_without_being_asked_for() -> None:
     assert control_steps(Controls()) == {}
-    assert control_steps(Controls(auto_exposure=True)) == {"auto_exposure": 3}
+    assert control_steps(Controls(auto_exposure=True)) == {Control.AUTO_EXPOSURE: 3}
 
 
 def test_a_mains_of_55_hz_is_refused() -> None:

@@ -7,6 +7,7 @@ the node's number taken, and the camera would come back under another.
 
 import errno
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from types import MappingProxyType
@@ -30,6 +31,23 @@ class Control(StrEnum):
     FOCUS = "focus_absolute"
     POWER_LINE = "power_line_frequency"  # 0 off, 1 50 Hz, 2 60 Hz, 3 automatic
 
+
+@dataclass(frozen=True, slots=True)
+class Automatic:
+    """A switch, its codes for off and on, and the value that it drives."""
+
+    switch: Control
+    off: int
+    on: int
+    value: Control
+
+
+AUTOMATICS = (
+    Automatic(Control.AUTO_EXPOSURE, 1, 3, Control.EXPOSURE),
+    Automatic(Control.AUTO_WB, 0, 1, Control.WB_TEMPERATURE),
+    Automatic(Control.AUTOFOCUS, 0, 1, Control.FOCUS),
+)
+SWITCHES = frozenset(automatic.switch for automatic in AUTOMATICS)
 
 _IDS: Mapping[Control, int] = MappingProxyType(
     {  # <linux/v4l2-controls.h>

@@ -5,14 +5,19 @@ while its automatic is off, so an automatic goes before its value, each way.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
-from mocapd.capture.webcam.camera_controls import Control, ControlDevice, power_line_code
-from mocapd.capture.webcam.controls import Controls
+from mocapd.capture.webcam.camera_controls import (
+    AUTOMATICS,
+    SWITCHES,
+    Control,
+    ControlDevice,
+    power_line_code,
+)
+from mocapd.capture.webcam.controls import Controls, given_values
 from mocapd.capture.webcam.v4l2 import WebcamSettings
 
-MANUAL_EXPOSURE, AUTO_EXPOSURE, _AUTO_EVERYTHING = 1, 3, 0
+_AUTO_EVERYTHING = 0  # of AUTO_EXPOSURE
 UNITS_PER_S = 10_000
 """Units of the control EXPOSURE, 100 us each."""
 
@@ -35,23 +40,6 @@ class Lockable(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class _Automatic:
-    """An automatic, its code for off, and the value that it drives."""
-
-    switch: Control
-    off: int
-    on: int
-    value: Control
-
-
-_AUTOMATICS = (
-    _Automatic(Control.AUTO_EXPOSURE, MANUAL_EXPOSURE, AUTO_EXPOSURE, Control.EXPOSURE),
-    _Automatic(Control.AUTO_WB, 0, 1, Control.WB_TEMPERATURE),
-    _Automatic(Control.AUTOFOCUS, 0, 1, Control.FOCUS),
-)
-
-
 Held = Mapping[Control, int]
 """The controls that a camera has, and their values."""
 
@@ -70,7 +58,7 @@ def set_free(device: ControlDevice, held: Held) -> None:
     """Switch the automatics on, but for the one that would lower the rate. Raises UnavailableError."""
     if Control.DYNAMIC_FRAMERATE in held:
         device.write(Control.DYNAMIC_FRAMERATE, 0)
-    for automatic in _AUTOMATICS:
+    for automatic in AUTOMATICS:
         # without both controls the automatic's value could not be restored
         if automatic.switch not in held or automatic.value not in held:
             continue
@@ -86,9 +74,9 @@ def lock(device: ControlDevice, held: Held, fps_hz: float, mains_hz: int | None 
     lamps flicker: the exposure becomes a multiple of their period, 1/100 or 1/120 s.
     Returns what the camera holds now, as it is asked for at each opening. Raises UnavailableError.
     """
-    settled = {a.value: device.read(a.value) for a in _AUTOMATICS if a.value in held}
+    settled = {a.value: device.read(a.value) for a in AUTOMATICS if a.value in held}
     gain = device.read(Control.GAIN) if Control.GAIN in held else None
-    for automatic in _AUTOMATICS:
+    for automatic in AUTOMATICS:
         if automatic.switch in held:
             device.write(automatic.switch, automatic.off)
         value = settled.get(automatic.value)
@@ -143,21 +131,13 @@ def as_controls(device: ControlDevice, held: Held, mains_hz: int | None = None) 
 
 def as_held(controls: Controls) -> Held:
     """The values of a lock, for `restore`, which switches their automatics off."""
-    rate, mains_hz = controls.dynamic_framerate, controls.power_line_hz
-    values = {
-        Control.EXPOSURE: controls.exposure,
-        Control.WB_TEMPERATURE: controls.wb_temperature,
-        Control.FOCUS: controls.focus,
-        Control.GAIN: controls.gain,
-        Control.DYNAMIC_FRAMERATE: None if rate is None else int(rate),
-        Control.POWER_LINE: None if mains_hz is None else power_line_code(mains_hz),
-    }
-    return {control: value for control, value in values.items() if value is not None}
+    given = given_values(controls)
+    return {control: value for control, value in given.items() if control not in SWITCHES}
 
 
 def restore(device: ControlDevice, before: Held) -> None:
     """Restores earlier values. Raises UnavailableError."""
-    for automatic in _AUTOMATICS:
+    for automatic in AUTOMATICS:
         was = before.get(automatic.switch)
         if was in (None, automatic.off) and automatic.value in before:
             device.write(automatic.switch, automatic.off)

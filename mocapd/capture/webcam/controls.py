@@ -7,15 +7,14 @@ opening.
 
 from dataclasses import dataclass
 
-from mocapd.capture.webcam.camera_controls import Control, ControlDevice, power_line_code
+from mocapd.capture.webcam.camera_controls import (
+    AUTOMATICS,
+    Control,
+    ControlDevice,
+    power_line_code,
+)
 from mocapd.errors import ConfigError
 
-# the field of each automatic, its codes for off and on, and the field of its value
-_AUTOMATICS = (
-    ("auto_exposure", (1, 3), "exposure"),
-    ("auto_wb", (0, 1), "wb_temperature"),
-    ("autofocus", (0, 1), "focus"),
-)
 _CONTROLS = {
     "auto_exposure": Control.AUTO_EXPOSURE,
     "exposure": Control.EXPOSURE,
@@ -71,29 +70,31 @@ class ControlResult:
         return self.asked == self.got
 
 
-def control_steps(controls: Controls) -> dict[str, int]:
-    """The values by name, in the order to set them: each automatic before its value."""
-    steps: dict[str, int] = {}
-    for switch, codes, name in _AUTOMATICS:
-        automatic, value = getattr(controls, switch), getattr(controls, name)
-        if automatic is None and value is not None:
-            automatic = False
-        if automatic is not None:
-            steps[switch] = codes[automatic]
-        if value is not None and not automatic:
-            steps[name] = value
-    if controls.gain is not None:
-        steps["gain"] = controls.gain
-    if controls.dynamic_framerate is not None:
-        steps["dynamic_framerate"] = int(controls.dynamic_framerate)
+def given_values(controls: Controls) -> dict[Control, int]:
+    """The values that are given, as V4L2 counts them; of an automatic 0 or 1."""
+    given = {control: getattr(controls, name) for name, control in _CONTROLS.items()}
     if controls.power_line_hz is not None:
-        steps["power_line_hz"] = power_line_code(controls.power_line_hz)
-    return steps
+        given[Control.POWER_LINE] = power_line_code(controls.power_line_hz)
+    return {control: int(value) for control, value in given.items() if value is not None}
+
+
+def control_steps(controls: Controls) -> dict[Control, int]:
+    """The values in the order to set them: each automatic before its value."""
+    steps: dict[Control, int] = {}
+    given = given_values(controls)
+    for automatic in AUTOMATICS:
+        is_on = given.pop(automatic.switch, 0 if automatic.value in given else None)
+        value = given.pop(automatic.value, None)
+        if is_on is not None:
+            steps[automatic.switch] = automatic.on if is_on else automatic.off
+        if value is not None and not is_on:
+            steps[automatic.value] = value
+    return steps | given
 
 
 def apply_controls(device: ControlDevice, controls: Controls) -> tuple[ControlResult, ...]:
     """Sets all given controls, and reads them back. Raises UnavailableError."""
     return tuple(
-        ControlResult(_CONTROLS[name], value, device.write(_CONTROLS[name], value))
-        for name, value in control_steps(controls).items()
+        ControlResult(control, value, device.write(control, value))
+        for control, value in control_steps(controls).items()
     )
