@@ -1,6 +1,7 @@
 """Locking and giving back controls, exposures that do not flicker, and what fits on a USB bus."""
 
 import errno
+import fcntl
 import os
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mocapd.capture.webcam import v4l2_ioctl
 from mocapd.capture.webcam.camera_controls import Control, NodeControls
 from mocapd.capture.webcam.control_lock import exposure_units, lock, read_held, restore, set_free
 from mocapd.capture.webcam.controls import Controls, apply_controls, control_steps
@@ -214,3 +216,17 @@ def test_a_lower_mode_fits_and_is_the_best_that_does() -> None:
     )
     both = (*YUYV, PixelFormat("MJPG", VGA, (30.0, 20.0)))
     assert lower_mode(both, Mode("MJPG", VGA, 30.0), 3e6) == Mode("MJPG", VGA, 20.0)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "is_there"), [(3, 2047, True), (3, 3, False), (9, 2, False)]
+)
+def test_a_range_without_a_choice_is_that_of_a_control_that_cannot_be_set(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, low: int, high: int, is_there: bool
+) -> None:
+    """Else a node refuses each value: "takes 9 to 2, not 5"."""
+    plain = tmp_path / "video0"
+    plain.touch()
+    answer = v4l2_ioctl._QUERYCTRL.pack(0, 1, b"Exposure", low, high, 1, low, 0, 0, 0)
+    monkeypatch.setattr(fcntl, "ioctl", lambda *_: answer)
+    assert (NodeControls(plain).range(Control.EXPOSURE) is not None) == is_there

@@ -89,12 +89,13 @@ def is_streaming_elsewhere(fd: int) -> bool:
 
 
 def query_control(fd: int, control_id: int) -> ControlRange | None:
-    """VIDIOC_QUERYCTRL: None for a control that cannot be set. Raises OSError (EINVAL: the camera lacks it)."""
+    """VIDIOC_QUERYCTRL: None for a control that cannot be set, also as its range is one value or ends before it begins.
+    Raises OSError (EINVAL: the camera lacks it)."""
     raw = fcntl.ioctl(
         fd, _QUERY_CONTROL, struct.pack("I", control_id).ljust(_QUERYCTRL.size, b"\0")
     )
     _id, _kind, _name, low, high, step, _default, flags, *_ = _QUERYCTRL.unpack(raw)
-    if flags & (_FLAG_DISABLED | _FLAG_READ_ONLY):
+    if flags & (_FLAG_DISABLED | _FLAG_READ_ONLY) or low >= high:
         return None
     return ControlRange(low, high, max(step, 1))
 
