@@ -9,6 +9,9 @@ from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.types import Camera, Floats
 
 _LEAST_BASELINE_M = 0.02
+_BLOCK = (
+    1 << 14
+)  # points whose undistortion stays in the processor's cache: pictures take half of the time or less
 
 
 def camera_from_world(camera: Camera) -> RigidTransform:
@@ -87,6 +90,11 @@ def undistort(dist: Floats, xy_distorted: Floats, iterations: int = 20) -> Float
     """The inverse of `distort` by fixed-point iteration; converges for the lenses of ordinary webcams."""
     if not dist.any():
         return xy_distorted.copy()
+    flat = xy_distorted.reshape(-1, 2)
+    if len(flat) > _BLOCK:
+        blocks = np.split(flat, range(_BLOCK, len(flat), _BLOCK))
+        done = [undistort(dist, block, iterations) for block in blocks]
+        return np.concatenate(done).reshape(xy_distorted.shape)
     k1, k2, p1, p2, k3 = dist
     # contiguous, as pictures' grids have many points
     x_distorted, y_distorted = (xy_distorted[..., i].copy() for i in (0, 1))

@@ -67,6 +67,14 @@ def test_undistorts_as_opencv_does() -> None:
     assert np.abs(camera_model.normalised(camera, pixels) - expected).max() < 1e-6
 
 
+def test_a_picture_is_undistorted_as_its_rows_are() -> None:
+    """In blocks, whose borders show nowhere."""
+    x, y = np.meshgrid(np.linspace(-0.6, 0.6, 300), np.linspace(-0.4, 0.4, 111))
+    xy, dist = np.stack([x, y], axis=-1), np.array([-0.28, 0.07, 0.001, -0.0005, 0.01])
+    rows = [camera_model.undistort(dist, row) for row in xy]
+    assert np.array_equal(camera_model.undistort(dist, xy), rows)
+
+
 @given(st.floats(-0.35, 0.2), st.floats(-0.1, 0.1), st.floats(-0.004, 0.004))
 def test_undistort_undoes_distort_for_the_lenses_of_webcams(k1: float, k2: float, p: float) -> None:
     dist = np.array([k1, k2, p, -p, 0.01])
