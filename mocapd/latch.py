@@ -1,7 +1,9 @@
-"""A one-shot event that threads wait for, and that a thread or a signal handler sets."""
+"""One-shot events that threads wait for, and that a thread or a signal handler sets."""
 
 from contextlib import suppress
 from threading import Lock
+
+from mocapd.errors import MocapdError
 
 
 class Latch:
@@ -34,3 +36,29 @@ class Latch:
     def _release(self) -> None:
         with suppress(RuntimeError):  # another thread or a handler was first
             self._closed.release()
+
+
+class ThreadDiedError(RuntimeError):
+    """A thread ended unexpectedly; the exception that ended it is the `__cause__`."""
+
+
+class EndLatch(Latch):
+    """A latch that an exception of another thread sets, too; it is raised where the owner waits."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._death: BaseException | None = None
+
+    def died(self, error: BaseException) -> None:
+        """Sets it after the unexpected end of a thread, the first of which is raised; thread-safe."""
+        self._death = self._death or error
+        self.set()
+
+    def wait(self, timeout_s: float) -> bool:
+        """See Latch. Raises the MocapdError that ended a thread, ThreadDiedError for anything else."""
+        is_set = super().wait(timeout_s)
+        if isinstance(self._death, MocapdError):
+            raise self._death
+        if self._death is not None:
+            raise ThreadDiedError from self._death
+        return is_set

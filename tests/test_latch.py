@@ -5,7 +5,10 @@ import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 
-from mocapd.latch import Latch
+import pytest
+
+from mocapd.errors import UnavailableError
+from mocapd.latch import EndLatch, Latch, ThreadDiedError
 
 # A timer interrupts the waiting thread some thousand times, at any instruction
 INTERRUPTED = """
@@ -70,3 +73,17 @@ signal.setitimer(signal.ITIMER_REAL, 0.0)
 
 def test_a_signal_as_the_time_is_up_does_not_make_it_wait_for_ever() -> None:
     subprocess.run([sys.executable, "-c", UP_WHEN_INTERRUPTED], check=True, timeout=60.0)
+
+
+def test_what_ended_a_thread_first_is_raised_where_its_owner_waits() -> None:
+    latch = EndLatch()
+    assert not latch.wait(0.0)
+    latch.died(KeyError("first"))
+    latch.died(UnavailableError("second"))
+    with pytest.raises(ThreadDiedError) as died:
+        latch.wait(1.0)
+    assert isinstance(died.value.__cause__, KeyError)
+    latch = EndLatch()
+    latch.died(UnavailableError("an expected one"))
+    with pytest.raises(UnavailableError, match="an expected one"):
+        latch.wait(1.0)

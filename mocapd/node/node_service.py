@@ -17,8 +17,8 @@ from mocapd.capture.remote.camera_wire import MOST_NAME, CameraState, ClockAnswe
 from mocapd.capture.webcam.plug_events import PlugEvents
 from mocapd.clock import monotonic_ns
 from mocapd.config.node_params import Params
-from mocapd.errors import ConfigError, MocapdError
-from mocapd.latch import Latch
+from mocapd.errors import ConfigError
+from mocapd.latch import EndLatch
 from mocapd.node.network_emulation import Imperfections, LossyLink, NetworkLink
 from mocapd.node.node_access import check_pairing, node_session_config, takes_orders
 from mocapd.node.node_camera import NodeCamera
@@ -32,10 +32,6 @@ _log = logging.getLogger(__name__)
 
 HEARTBEAT_S = 0.1  # interval of updating the cameras' liveliness [s]
 _STOP_S = 1.4
-
-
-class NodeThreadDiedError(Exception):
-    """A defect ended one of the node's threads; it is the `__cause__`."""
 
 
 class CameraNode:
@@ -62,8 +58,7 @@ class CameraNode:
         self._run = secrets.randbits(48)
         self._plugs, self._suspension = PlugEvents(self._look_again), SuspensionWatch()
         self._opened = ExitStack()
-        self._over = Latch()
-        self._death: BaseException | None = None
+        self._over = EndLatch()
         self.cameras = tuple(
             NodeCamera(
                 self.name,
@@ -104,7 +99,7 @@ class CameraNode:
 
     def wait(self, timeout_s: float) -> bool:
         """Runs for `timeout_s` [s]; True when the node is over, after `end` or the end of every recording. Raises the
-        MocapdError that ended a thread, or NodeThreadDiedError."""
+        MocapdError that ended a thread, or ThreadDiedError."""
         until_s = time.monotonic() + timeout_s
         while not self._over.wait(HEARTBEAT_S):
             slept_s = self._suspension.slept_s()
@@ -116,10 +111,6 @@ class CameraNode:
                 self._over.set()
             if time.monotonic() > until_s:
                 break
-        if isinstance(self._death, MocapdError):
-            raise self._death
-        if self._death is not None:
-            raise NodeThreadDiedError from self._death
         return self._over.is_set()
 
     def end(self) -> None:
@@ -128,8 +119,7 @@ class CameraNode:
 
     def died(self, error: BaseException) -> None:
         """Ends the node after the unexpected end of a thread."""
-        self._death = self._death or error
-        self._over.set()
+        self._over.died(error)
 
     def states(self) -> tuple[CameraState, ...]:
         return tuple(camera.state for camera in self.cameras)

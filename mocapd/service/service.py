@@ -10,8 +10,7 @@ from mocapd.body.shape import skeleton_of
 from mocapd.calibrate.bump.bump_watch import Mounting
 from mocapd.capture.camera_thread.capture_status import CaptureStatus
 from mocapd.config.sections import Config
-from mocapd.errors import MocapdError
-from mocapd.latch import Latch
+from mocapd.latch import EndLatch
 from mocapd.outputs.base import SinkStatus
 from mocapd.outputs.from_rig import calibration_info
 from mocapd.outputs.messages import CalibrationInfo, CameraStatus, Facing
@@ -25,10 +24,6 @@ from mocapd.service.publisher import Publisher
 from mocapd.service.running_session import RunningSession
 from mocapd.session.session import Session
 from mocapd.types import Rig
-
-
-class ThreadDiedError(RuntimeError):
-    """A thread ended with an unexpected exception, the `__cause__`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,8 +56,7 @@ class Service:
         self._earlier: Metrics | None = None  # of all sessions before
         self._earlier_cameras: dict[str, CaptureStatus] = {}  # of the sessions that had them
         self.preparing = ""  # see Snapshot; its owner knows
-        self._ended = Latch()
-        self._death: BaseException | None = None
+        self._ended = EndLatch()
         self._started_unix_ns = 0
         self._published: dict[str, tuple[object, ...]] = {}  # camera troubles
 
@@ -157,8 +151,7 @@ class Service:
 
     def died(self, error: BaseException) -> None:
         """Ends the service after the unexpected end of a thread."""
-        self._death = self._death or error
-        self._ended.set()
+        self._ended.died(error)
 
     def end(self) -> None:
         """Makes `wait` return; thread-safe and signal-safe."""
@@ -169,12 +162,7 @@ class Service:
 
         Raises the MocapdError that killed a thread, ThreadDiedError for anything else.
         """
-        ended = self._ended.wait(timeout_s)
-        if isinstance(self._death, MocapdError):
-            raise self._death
-        if self._death is not None:
-            raise ThreadDiedError from self._death
-        return ended or self._running.over
+        return self._ended.wait(timeout_s) or self._running.over
 
     def watch(self) -> None:
         """Runs the watchdogs; call several times a second. Raises StuckStepError."""

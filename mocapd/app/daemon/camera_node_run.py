@@ -40,8 +40,9 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
     from mocapd.boundary.image_decoding import REDUCTIONS
     from mocapd.capture.decoder_warnings import DecoderWarnings
     from mocapd.capture.kinds.source_kinds import common_origin, open_origin
+    from mocapd.latch import ThreadDiedError
     from mocapd.node.network_emulation import parse_imperfections
-    from mocapd.node.node_service import CameraNode, NodeThreadDiedError
+    from mocapd.node.node_service import CameraNode
     from mocapd.outputs.output_table import zenoh_section
     from mocapd.session.camera_inputs import camera_inputs
 
@@ -66,7 +67,7 @@ def run_camera_node(effective: "Effective", imperfect: str) -> int:
                 if notifier.is_heartbeat_due:
                     notifier.heartbeat()
             notifier.stopping()
-    except NodeThreadDiedError as error:
+    except ThreadDiedError as error:
         traceback.print_exception(error.__cause__)
         return INTERNAL_ERROR
     end_despite_work(signals.exit_code)

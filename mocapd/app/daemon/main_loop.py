@@ -13,7 +13,8 @@ from typing import Protocol
 from mocapd.app.daemon.early_signals import SIGINT_EXIT, EarlySignal, on_terminal
 from mocapd.app.daemon.end_deadline import EndDeadline
 from mocapd.app.terminal.status_line import StatusLine
-from mocapd.service.service import Service, Snapshot, ThreadDiedError
+from mocapd.latch import ThreadDiedError
+from mocapd.service.service import Service, Snapshot
 
 SHOW_EVERY_S = 0.25  # how often the status line changes [s]
 PUBLISH_EVERY = 4  # health is published every fourth tick, and after a camera's change of state

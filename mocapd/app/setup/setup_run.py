@@ -99,7 +99,7 @@ def _alone(
 ) -> int:
     from mocapd.app.daemon.main_loop import INTERNAL_ERROR
     from mocapd.app.setup.setup_hosts import demo_host, webcam_host
-    from mocapd.service.service import ThreadDiedError
+    from mocapd.latch import ThreadDiedError
     from mocapd.web.runtime_file import SETUP
     from mocapd.web.server import WebServer
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from mocapd.capture.base import Source
 from mocapd.capture.recording.recording_metadata import RecordingMetadata
 from mocapd.capture.webcam.webcam_listing import CameraInfo
-from mocapd.errors import MocapdError, UnavailableError
-from mocapd.latch import Latch
+from mocapd.errors import UnavailableError
+from mocapd.latch import EndLatch
 from mocapd.pipeline.body_hub import BodySample
 from mocapd.pipeline.frame_hub import FrameHub
-from mocapd.service.service import Snapshot, ThreadDiedError
+from mocapd.service.service import Snapshot
 from mocapd.types import Rig
 from mocapd.wizard.cameras.camera_locks import CameraLocks
 from mocapd.wizard.cameras.same_port import PortChange
@@ -49,9 +49,8 @@ class OwnHost:
         SetupCameras. Raises ConfigError or InputError."""
         if step is StepName.COLOUR:  # a calibration may say that there is no shirt
             draft = replace(draft, has_shirt=True)
-        self._over = Latch()
+        self._over = EndLatch()
         self._saved = threading.Event()
-        self._death: BaseException | None = None
         self._cameras = OpenCameras(draft.cameras, self.on_thread_died, sources, settings.bundler)
         self._locks = CameraLocks(self._cameras.sources)
         self._shown = NewestBody()
@@ -85,8 +84,7 @@ class OwnHost:
 
     def on_thread_died(self, error: BaseException) -> None:
         """A thread raised an unexpected exception, so the process must end."""
-        self._death = self._death or error
-        self._over.set()
+        self._over.died(error)
 
     def end(self) -> None:
         """Make `wait` return; from any thread or a signal handler."""
@@ -97,10 +95,6 @@ class OwnHost:
         that killed a thread, ThreadDiedError for anything else."""
         over = self._over.wait(timeout_s)
         self._cameras.watch()
-        if isinstance(self._death, MocapdError):
-            raise self._death
-        if self._death is not None:
-            raise ThreadDiedError from self._death
         return over
 
     @property
