@@ -18,6 +18,7 @@ _STAGES = {
     "shirt": ("shirt",),
     "markerless": ("clothes",),
 }
+_LOADING_S = 0.01  # of a kernel that is kept on disk
 _LOOP = 50_000
 TABLE_LOOP_S = 0.0028  # `loop_s` there
 # of the whole and of its beginning, on the table's machine, without their kernels
@@ -68,7 +69,7 @@ def first_start_tasks(config: "Config") -> list[Task]:
     first = {"shirt", "film", "database"} if is_early else set(stages)
     rows = rows_of(read_table(), stages)
     tasks = [
-        Task(COMPILING, row.seconds, partial(_compile, row), after, not row.stages & first)
+        Task(COMPILING, _seconds(row), partial(_compile, row), after, not row.stages & first)
         for row, after in zip(rows, callees_of_rows(rows), strict=True)
     ]
     making = (
@@ -89,6 +90,15 @@ def first_start_tasks(config: "Config") -> list[Task]:
 
 def _rows_of_stage(rows: tuple[KernelRow, ...], stage: str) -> frozenset[int]:
     return frozenset(i for i, row in enumerate(rows) if stage in row.stages)
+
+
+def _seconds(row: KernelRow) -> float:
+    """Expected time until the kernel is there; after a change of a few kernels most are on disk."""
+    cache = row.dispatcher._cache
+    if cache.cache_path is None:  # numba found no folder that it may write to
+        return row.seconds
+    key = cache._index_key(row.arguments, row.dispatcher.targetctx.codegen())
+    return _LOADING_S if key in cache._cache_file._load_index() else row.seconds
 
 
 def _compile(row: KernelRow, _report: Share) -> None:

@@ -7,12 +7,14 @@ from pathlib import Path
 import pytest
 
 from mocapd.app.daemon import cache_warmup
+from mocapd.app.daemon import first_start_tasks as first_tasks
 from mocapd.app.daemon.cache_warmup import Preparation
 from mocapd.app.daemon.early_start import EarlyStart
 from mocapd.app.daemon.first_start_tasks import begins_early, first_start_tasks
 from mocapd.app.daemon.session_change import PREPARED
 from mocapd.app.daemon.task_pool import Progress, Share, Task, run_tasks
 from mocapd.config.sections import CameraSection, Config, TrackerSection
+from mocapd.kernels.kernel_table import KernelRow
 from tests.outputs.frames import eventually
 
 SIMULATED = (
@@ -22,7 +24,11 @@ SIMULATED = (
 REAL = (CameraSection("left", "/dev/video0"), CameraSection("right", "/dev/video2"))
 
 
-def test_the_demo_waits_for_the_shirt_and_real_cameras_for_everything(tmp_path: Path) -> None:
+def test_the_demo_waits_for_the_shirt_and_real_cameras_for_everything(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # on a new machine, where no kernel is kept
+    monkeypatch.setattr(first_tasks, "_seconds", lambda row: row.seconds)
     demo = Config(cache_dir=tmp_path, camera=SIMULATED)
     tasks = first_start_tasks(demo)
     later = {i for i, task in enumerate(tasks) if task.is_later}
@@ -44,6 +50,21 @@ def test_what_is_there_is_not_made_again(tmp_path: Path) -> None:
     assert any(task.what == "pose database" for task in first_start_tasks(config))
     (tmp_path / "pose_database.bin").touch()
     assert {task.what for task in first_start_tasks(config)} == {"compiling"}
+
+
+def test_a_kernel_on_disk_is_expected_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After a change of one kernel the demo announced seven minutes of compiling, and took five seconds."""
+    monkeypatch.syspath_prepend(tmp_path)
+    lines = ("import numba", "@numba.njit(cache=True)", "def twice(x):", "    return 2 * x", "")
+    (tmp_path / "twice_kernels.py").write_text("\n".join(lines))
+    row = KernelRow("twice_kernels", "twice", ("float64",), 5.0, frozenset({"shirt"}))
+    assert first_tasks._seconds(row) == 5.0
+    row.dispatcher.compile(row.arguments)
+    assert first_tasks._seconds(row) < 0.1
+    other = KernelRow("twice_kernels", "twice", ("int64",), 5.0, frozenset({"shirt"}))
+    assert first_tasks._seconds(other) == 5.0
 
 
 def test_later_tasks_come_last_and_the_first_are_told_to_be_over(tmp_path: Path) -> None:
