@@ -61,6 +61,15 @@ class LoadedDatabase:
     warning: str = ""
 
 
+def is_current(cache_dir: Path) -> bool:
+    """True if the database's file can be used: neither missing nor damaged nor of another version."""
+    try:
+        _read(cache_dir / CACHE_NAME, content_hash(DatabaseParams()))
+    except _UnusableError:
+        return False
+    return True
+
+
 def load_or_build(
     cache_dir: Path,
     params: DatabaseParams | None = None,

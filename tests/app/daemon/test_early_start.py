@@ -15,6 +15,8 @@ from mocapd.app.daemon.session_change import PREPARED
 from mocapd.app.daemon.task_pool import Progress, Share, Task, run_tasks
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.kernels.kernel_table import KernelRow
+from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, content_hash
+from mocapd.shirt.pose_database.database_file import write_database
 from tests.outputs.frames import eventually
 
 SIMULATED = (
@@ -45,10 +47,12 @@ def test_the_demo_waits_for_the_shirt_and_real_cameras_for_everything(
         assert not any(task.is_later for task in first_start_tasks(config))
 
 
-def test_what_is_there_is_not_made_again(tmp_path: Path) -> None:
-    config = Config(cache_dir=tmp_path, camera=REAL)
+def test_what_is_there_is_not_made_again(tmp_path: Path, smaller_database: PoseDatabase) -> None:
+    config, path = Config(cache_dir=tmp_path, camera=REAL), tmp_path / "pose_database.bin"
     assert any(task.what == "pose database" for task in first_start_tasks(config))
-    (tmp_path / "pose_database.bin").touch()
+    write_database(path, smaller_database, "of another version")
+    assert any(task.what == "pose database" for task in first_start_tasks(config))
+    write_database(path, smaller_database, content_hash(DatabaseParams()))
     assert {task.what for task in first_start_tasks(config)} == {"compiling"}
 
 
