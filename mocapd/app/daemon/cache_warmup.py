@@ -106,16 +106,19 @@ def prepare_in_processes(config: "Config", report: Report = _quiet) -> None:
     """Makes the missing caches of this code and tracker in child processes; reports the progress.
 
     Failures are silent here, as the caller's own attempt reports them. The children end with the caller; an interrupted
-    cache is rebuilt next time. Call it while the process has one thread.
+    cache, or one that a full disk did not take, is rebuilt next time. Call it while the process has one thread.
     """
     if is_prepared(config):
         return
     import mocapd.session.session  # noqa: F401  see above
     from mocapd.app.daemon.first_start_tasks import has_tasks
+    from mocapd.trackers.registry import has_caches
 
     prepare = _run_tasks if has_tasks(config.tracker.name) else _open_once
     with one_at_a_time(config.cache_dir, LOCK):
-        if not is_prepared(config) and prepare(config, report):  # else another process did
+        if is_prepared(config):  # by another process
+            return
+        if prepare(config, report) and has_caches(config.tracker.name, config.cache_dir):
             remember(config)
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import psutil
 import pytest
 
-from mocapd.app.daemon.cache_warmup import database_in_background
+from mocapd.app.daemon import cache_warmup
+from mocapd.app.daemon.cache_warmup import database_in_background, prepare_in_processes
 from mocapd.app.terminal import progress
 from mocapd.app.terminal.progress import ProgressBars
 from mocapd.config.sections import CameraSection, Config, TrackerSection
@@ -64,6 +65,19 @@ def test_a_marker_that_cannot_be_written_is_no_hint(
     assert outcome.code == 0, outcome.err
     assert "Traceback" not in outcome.err
     assert outcome.err.count("the next start prepares") == 1
+
+
+def test_a_database_that_no_disk_took_is_not_prepared(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a full disk `mocapd prepare` said that everything was prepared."""
+    monkeypatch.setattr(cache_warmup, "_run_tasks", lambda *_: True)
+    config = Config(cache_dir=tmp_path)
+    for is_stored in (False, True):
+        if is_stored:
+            (tmp_path / CACHE_NAME).touch()
+        prepare_in_processes(config)
+        assert is_prepared(config) == is_stored
 
 
 def test_who_tries_all_trackers_prepares_each_once(tmp_path: Path) -> None:
