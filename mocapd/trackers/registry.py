@@ -129,7 +129,8 @@ def _build_canned(_calibration: Calibration, params: Any, _resources: Resources)
 def _database(resources: Resources) -> "PoseDatabase":
     from mocapd.shirt.pose_database.database_file import load_or_build, load_or_build_beginning
 
-    stale = not is_absent(resources.cache_dir / CACHE_NAME)
+    # a beginning is made when the whole is stale, which is said when that is rebuilt
+    stale = not resources.is_beginning and not is_absent(resources.cache_dir / CACHE_NAME)
     load = load_or_build_beginning if resources.is_beginning else load_or_build
     loaded = load(resources.cache_dir, progress=resources.progress, map_chunks=resources.map_chunks)
     if loaded.built and stale:
