@@ -1,12 +1,13 @@
 """Hosts of a setup without a daemon: with this machine's webcams, or with simulated ones."""
 
+import logging
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mocapd.boundary.files import is_absent
 from mocapd.calibration.calibration_file import FILE_NAME
 from mocapd.calibration.saved_sources import require_password, sources_by_masked
-from mocapd.errors import ConfigError
+from mocapd.errors import ConfigError, InputError
 from mocapd.wizard.check.check_settings import CheckSettings
 from mocapd.wizard.draft import Draft, DraftCamera
 from mocapd.wizard.hosts.own_host import OwnHost
@@ -15,6 +16,8 @@ from mocapd.wizard.saving import load_draft
 if TYPE_CHECKING:
     from mocapd.config.sections import Config
     from mocapd.wizard.step_names import StepName
+
+_log = logging.getLogger(__name__)
 
 
 def webcam_host(config: "Config", step: "StepName | None", following: str) -> OwnHost:
@@ -68,9 +71,16 @@ def _with_passwords(draft: Draft, config: "Config") -> Draft:
 
 
 def saved_draft(config: "Config", step: "StepName | None") -> Draft:
-    """The saved calibration; empty without one. Raises ConfigError if a single `step` needs a missing one."""
+    """The saved calibration; empty without one, and for all steps without one that can be read, which the next save sets
+    aside. Raises ConfigError or InputError if a single `step` needs one."""
     if not is_absent(config.state_dir / FILE_NAME):
-        return load_draft(config.state_dir)
+        try:
+            return load_draft(config.state_dir)
+        except (ConfigError, InputError) as error:
+            if step is not None:
+                raise
+            _log.warning("%s: %s: the setup begins without it", error.where, error.what)
+            return Draft()
     if step is not None:
         raise ConfigError(
             f"there is no calibration yet of which {step.value!r} could be repeated",
