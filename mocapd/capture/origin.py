@@ -48,12 +48,14 @@ class OriginKind:
     """The origins of a kind of source; an origin's name is an address without a camera.
 
     cameras(origin): camera names. open(origin, cache_dir, progress): opens the origin, possibly rendering it into the
-    cache first. open_beginning: the same for a part that is ready sooner. All raise InputError or ConfigError.
+    cache first. open_beginning: the same for a part that is ready sooner. is_made(origin, cache_dir): False if `open` would
+    render. All raise InputError or ConfigError.
     """
 
     cameras: Callable[[str], tuple[str, ...]]
     open: Callable[[str, Path, Progress], Origin]
     open_beginning: Callable[[str, Path, Progress], Origin] | None = None
+    is_made: Callable[[str, Path], bool] = lambda _origin, _cache_dir: True
 
 
 def camera_address(origin: str, camera: str) -> str:

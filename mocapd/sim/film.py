@@ -103,12 +103,17 @@ def _film(scenario: Scenario, stored: _FilmFile) -> Film:
 def load_beginning(scenario: Scenario, cache_dir: Path, progress: Progress | None = None) -> Film:
     """The first seconds of the film, which are ready sooner. They play forth and back, without a jump. Raises
     CannotCreateError."""
+    if is_rendered(scenario, cache_dir):
+        return load_film(scenario, cache_dir, progress)
     key, name = film_key(scenario), _file_name(scenario)
-    if cache_path(cache_dir, name, key).exists():
-        return _load(scenario, name, key, scenario.loop_s, cache_dir, progress)
     length_s = min(BEGINNING_S, scenario.loop_s)
     film = _load(scenario, f"{name}-beginning", key, length_s, cache_dir, progress)
     return replace(film, frames={name: (*one, *one[-2:0:-1]) for name, one in film.frames.items()})
+
+
+def is_rendered(scenario: Scenario, cache_dir: Path) -> bool:
+    """True if the whole film is in the cache; only loading checks whether it is damaged."""
+    return cache_path(cache_dir, _file_name(scenario), film_key(scenario)).exists()
 
 
 def film_key(scenario: Scenario) -> str:

@@ -58,12 +58,13 @@ def begins_early(config: "Config") -> bool:
 
 def first_start_tasks(config: "Config") -> list[Task]:
     """The tasks for this configuration's missing caches. Imports the kernels."""
-    from mocapd.capture.kinds.source_kinds import is_simulated
+    from mocapd.capture.kinds.source_kinds import is_made, is_simulated, origin_of
     from mocapd.shirt.pose_database.database_file import is_current
     from mocapd.trackers.registry import TRACKERS
 
     name, stages = config.tracker.name, list(_STAGES[config.tracker.name])
-    has_film = any(is_simulated(camera.source) for camera in config.camera)
+    origins = {origin_of(camera.source) for camera in config.camera if is_simulated(camera.source)}
+    has_film = not all(is_made(origin, config.cache_dir) for origin in origins)
     has_database = bool(TRACKERS[name].caches) and not is_current(config.cache_dir)
     stages += ["film"] * has_film + ["database"] * has_database
     is_early = begins_early(config)

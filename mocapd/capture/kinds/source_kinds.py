@@ -113,6 +113,11 @@ def open_origin(
     return opened(origin, cache_dir, progress)
 
 
+def is_made(origin: str, cache_dir: Path) -> bool:
+    """False if opening the origin would render it first. Raises InputError or ConfigError."""
+    return _origin_kind(origin).is_made(origin, cache_dir)
+
+
 def address_in_folder(folder: Path, address: str) -> str:
     """Resolves an address that a file in this folder holds. Raises ConfigError."""
     kind = kind_of(address)

@@ -80,11 +80,18 @@ def _open_origin(
     return open_film(origin, scenario, cache_dir, progress, sockets, is_beginning)
 
 
+def _is_made(origin: str, cache_dir: Path) -> bool:
+    from mocapd.sim.film import is_rendered
+    from mocapd.sim.scenario import load_scenario
+
+    return is_rendered(load_scenario(_scenario_path(origin)), cache_dir)
+
+
 SIM = SourceKind(
     form="sim:SCENARIO#camN",
     link=CameraLink.PLAYER,
     matches=_matches,
     open=_open,
     is_simulated=True,
-    origin=OriginKind(_cameras, _open_origin, partial(_open_origin, is_beginning=True)),
+    origin=OriginKind(_cameras, _open_origin, partial(_open_origin, is_beginning=True), _is_made),
 )

@@ -13,10 +13,14 @@ from mocapd.app.daemon.early_start import EarlyStart
 from mocapd.app.daemon.first_start_tasks import begins_early, first_start_tasks
 from mocapd.app.daemon.session_change import PREPARED
 from mocapd.app.daemon.task_pool import Progress, Share, Task, run_tasks
+from mocapd.assets import asset_path
 from mocapd.config.sections import CameraSection, Config, TrackerSection
 from mocapd.kernels.kernel_table import KernelRow
 from mocapd.shirt.pose_database.database import DatabaseParams, PoseDatabase, content_hash
 from mocapd.shirt.pose_database.database_file import write_database
+from mocapd.sim.cache_file import cache_path
+from mocapd.sim.film import film_key
+from mocapd.sim.scenario import load_scenario
 from tests.outputs.frames import eventually
 
 SIMULATED = (
@@ -54,6 +58,15 @@ def test_what_is_there_is_not_made_again(tmp_path: Path, smaller_database: PoseD
     assert any(task.what == "pose database" for task in first_start_tasks(config))
     write_database(path, smaller_database, content_hash(DatabaseParams()))
     assert {task.what for task in first_start_tasks(config)} == {"compiling"}
+
+
+def test_a_film_that_is_there_is_not_rendered_again(tmp_path: Path) -> None:
+    """A demo after an upgrade announced a minute of it, and took seconds."""
+    config = Config(cache_dir=tmp_path, camera=SIMULATED)
+    assert any(task.what == "film" for task in first_start_tasks(config))
+    scenario = load_scenario(asset_path("scenarios") / "living_room.toml")
+    cache_path(tmp_path, "sim-living_room", film_key(scenario)).touch()
+    assert not any(task.what == "film" for task in first_start_tasks(config))
 
 
 def test_a_kernel_on_disk_is_expected_at_once(
