@@ -28,7 +28,7 @@ def status_lines(report: StatusReport, now_unix_s: float | None = None) -> list[
         ("state", f"{_state(report)} ({report.tracker}, {report.tracking})"),
         *((("preparing", report.preparing),) if report.preparing else ()),
         ("rate", _rate(report)),
-        *((("effort", effort),) if (effort := effort_text(report.effort)) else ()),
+        *((("effort", effort),) if (effort := _effort(report)) else ()),
         ("calibration", _calibration(report, now_unix_s)),
         *((f"camera {camera.id}", _camera(camera)) for camera in report.cameras),
         *((f"output {output.name}", _output(output)) for output in report.outputs),
@@ -56,6 +56,11 @@ def _state(report: StatusReport) -> str:
     if report.state == "slow" and report.slowness:
         return report.slowness
     return _STATES[report.state]
+
+
+def _effort(report: StatusReport) -> str:
+    """Empty without pictures: the effort is that of the last ones, and no machine is too slow for none."""
+    return "" if report.state == "blind" else effort_text(report.effort)
 
 
 def _rate(report: StatusReport) -> str:
