@@ -155,6 +155,10 @@ def test_every_line_has_what_it_is_about() -> None:
     assert (
         "lost, unplugged, bumped: calibrate the room again, 3 lost frames, 2 times reopened" in text
     )
+    again = CAMERA.__class__("left", "live", "", "usb:1-5:046d:0825:", 30.0, 50, 1, 1, "")
+    assert (
+        "live 30.0 Hz, 1 lost frame, 1 time reopened" in status_lines(report(cameras=(again,)))[4]
+    )
     assert "1 listening, 990 sent, 10 not: game (pid 12)" in text
     assert "3 d 0 h ago: right: lost" in text
 

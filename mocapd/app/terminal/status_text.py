@@ -1,7 +1,6 @@
 """The status of a running daemon as text."""
 
 import time
-from collections.abc import Iterable
 
 from mocapd.control.control_messages import CameraStatusReport, OutputReport, StatusReport
 from mocapd.errors import one_line
@@ -93,7 +92,8 @@ def _camera(camera: CameraStatusReport) -> str:
     parts += [camera.detail] if camera.detail else []
     parts += ["bumped: calibrate the room again"] if camera.mounting == "bumped" else []
     parts += ["shows what another camera should"] if camera.mounting == "swapped" else []
-    parts += _counts(("lost frames", camera.lost_frames), ("times reopened", camera.reopened))
+    parts += _count(camera.lost_frames, "lost frame", "lost frames")
+    parts += _count(camera.reopened, "time reopened", "times reopened")
     return ", ".join(parts)
 
 
@@ -102,8 +102,8 @@ def _output(output: OutputReport) -> str:
     return f"{listeners}{output.sent} sent, {output.not_sent} not: {output.detail}"
 
 
-def _counts(*counts: tuple[str, int]) -> Iterable[str]:
-    return [f"{count} {what}" for what, count in counts if count]
+def _count(count: int, one: str, several: str) -> list[str]:
+    return [f"{count} {one if count == 1 else several}"] if count else []
 
 
 def _trouble(report: StatusReport, now_unix_s: float) -> str:
