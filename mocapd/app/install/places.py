@@ -46,7 +46,9 @@ def command(python: Path) -> str:
     path = str(python)
     if not path.startswith("/") or any(c in _SPECIAL or not c.isprintable() for c in path):
         raise ConfigError(
-            "no unit can name this path", ascii(path), "install mocapd under a plainer path"
+            "no unit can name this path",
+            ascii(path),
+            "give the whole path, from / on, or install mocapd under a plainer path",
         )
     path = path.replace("%", "%%")
     quoted = f'"{path}"' if " " in path else path

@@ -189,7 +189,7 @@ def test_paths_are_written_as_systemd_reads_them(path: str, written: str) -> Non
     "path", ["python", '/opt/"/python', "/opt/a\nExecStartPre=/bin/b", "/$HOME/p"]
 )
 def test_a_path_that_would_mean_something_else_is_refused(path: str) -> None:
-    with pytest.raises(ConfigError, match="plainer path"):
+    with pytest.raises(ConfigError, match=r"whole path, from / on.*plainer path"):
         unit_text("mocapd.service", Path(path))
 
 
