@@ -75,7 +75,8 @@ def load_folder(path: Path) -> CaptureFolder:
     size is not that of its calibration, or the cameras' rates differ).
     """
     if not is_folder(path):
-        raise InputError("no such capture folder", str(path), "check the path")
+        what = "no such capture folder" if is_absent(path) else "is no capture folder"
+        raise InputError(what, str(path), "give a folder with rig.json and the cameras' videos")
     rig_path = path / "rig.json"
     rig = load_rig(rig_path)
     entries = read_json(rig_path)["cameras"]

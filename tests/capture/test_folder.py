@@ -248,3 +248,13 @@ def test_a_development_capture_loads_whole(dev_captures: Callable[[str], Path]) 
     assert len(folder.model) == 5
     first = next(frame_sets(folder))
     assert all(frame.pixels.shape == (480, 640, 3) for frame in first.frames.values())
+
+
+def test_what_is_no_folder_is_told_from_what_is_absent(tmp_path: Path) -> None:
+    """`mocapd eval` said of a recording that is there to check the path."""
+    file = tmp_path / "a.mcap"
+    with pytest.raises(InputError, match=r"no such capture folder -- .*rig\.json"):
+        load_folder(file)
+    file.touch()
+    with pytest.raises(InputError, match=r"is no capture folder -- .*rig\.json"):
+        load_folder(file)
