@@ -9,9 +9,8 @@ from mocapd.geometry.rigid_transforms import RigidTransform
 from mocapd.types import Camera, Floats
 
 _LEAST_BASELINE_M = 0.02
-_BLOCK = (
-    1 << 14
-)  # points whose undistortion stays in the processor's cache: pictures take half of the time or less
+# points whose undistortion stays in the processor's cache: pictures take half of the time or less
+_BLOCK = 1 << 14
 
 
 def camera_from_world(camera: Camera) -> RigidTransform:
