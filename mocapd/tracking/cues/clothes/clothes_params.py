@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
 from mocapd.fit.stereo_depth import StereoDepthParams
-from mocapd.fit.terms.floor_term import FloorParams
+from mocapd.fit.terms.floor_term import CROSSING_VIEWS, FloorParams
 from mocapd.fit.terms.joint_term import JointTermParams
 from mocapd.fit.terms.stereo_match_term import StereoMatchParams
 from mocapd.tracking.cues.clothes.appearance import AppearanceParams
@@ -143,6 +143,7 @@ class ClothesParams:
     keypoint_start: KeypointStartParams = field(default_factory=KeypointStartParams)
     motion_monitor: MotionMonitorParams = field(default_factory=MotionMonitorParams)
     floor: FloorParams = field(default_factory=FloorParams)
+    floor_before_crossing_views: FloorParams = CROSSING_VIEWS
     feet: PlantedFeetParams = field(default_factory=PlantedFeetParams)
     depths: StereoDepthParams = field(default_factory=StereoDepthParams)
     joints: KeypointDetectionParams = field(default_factory=KeypointDetectionParams)

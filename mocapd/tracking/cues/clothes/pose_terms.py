@@ -19,6 +19,7 @@ class PoseTerms:
     def __init__(self, model: BodyModel, cameras: int, params: ClothesParams) -> None:
         """cameras: how many there are."""
         self.floor = FloorTerm(model, params.floor)
+        self._floor_before_crossing_views = FloorTerm(model, params.floor_before_crossing_views)
         self.joints = KeypointDetectors(cameras, model.stature_m, params.joints)
         self._params = params.distances
 
@@ -35,4 +36,6 @@ class PoseTerms:
         distances = stereo_distance_terms(
             fitter, drawn, views, grey, frame_index, self._params, only
         )
-        return (self.floor, *distances)
+        from_one_side = fitter.has_small_baseline(drawn, views)
+        floor = self.floor if from_one_side else self._floor_before_crossing_views
+        return (floor, *distances)

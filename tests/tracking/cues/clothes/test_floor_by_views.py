@@ -1,0 +1,58 @@
+"""Where views cross, pictures show how high feet are, and the floor hardly pulls at somebody who jumps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mocapd.body.arrays import PosedJoints
+from mocapd.body.model import Shaper, build_model
+from mocapd.body.pose_space import full_body
+from mocapd.body.posing_kernels import forward_kinematics
+from mocapd.body.skeleton import N_JOINTS
+from mocapd.fit.fit_params import FitParams
+from mocapd.fit.motion_state import MotionState, initial_information
+from mocapd.fit.solver import Fitter
+from mocapd.fit.view import View
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
+from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
+from mocapd.tracking.cues.clothes.regions import silhouette_labels
+from mocapd.tracking.track_state import BodyShapeEstimate, t_pose_state
+from tests.geometry.rigs import looking_at
+
+pytestmark = pytest.mark.kernels
+
+BODY = build_model(1.75, full_body())
+CHEST_M = np.array([0.0, 1.1, 0.0])
+CAMERAS = tuple(
+    looking_at(name, np.array(eye_m), CHEST_M, roll_rad=0.0)
+    for name, eye_m in (("front", (0.0, 1.3, 3.0)), ("side", (3.0, 1.3, 0.0)))
+)
+_PIXEL = np.zeros((1, 1), np.uint8)
+
+
+def pull_down(body: MotionState, cameras: int) -> float:
+    """Of the floor at the root of a body that so many cameras see [1/m]."""
+    fitter = Fitter(BODY, silhouette_labels(BODY), CAMERAS, [1, 1], FitParams())
+    views = [View(i, (0, 0, 1, 1), _PIXEL, _PIXEL, 0.0) for i in range(cameras)]
+    floor, *_ = PoseTerms(BODY, 2, ClothesParams()).measure(
+        fitter, body, views, lambda _: _PIXEL, 0
+    )
+    shaped = Shaper(BODY)(body.factors)
+    posed = PosedJoints(
+        shaped.rest, np.empty((N_JOINTS, 3, 3)), np.empty((N_JOINTS, 3)), np.empty((N_JOINTS, 4))
+    )
+    forward_kinematics(
+        BODY.parents, shaped.rest, body.root_m, body.local_xyzw, posed.R, posed.joints, posed.quats
+    )
+    H, b = np.zeros((BODY.n_pose, BODY.n_pose)), np.zeros(BODY.n_pose)
+    floor.add(posed, shaped, H, b)
+    return float(-b[1])
+
+
+def test_before_crossing_views_the_floor_hardly_pulls_at_who_jumps() -> None:
+    wearer = BodyShapeEstimate(np.ones(BODY.n_shape), initial_information(BODY.space), 0.0)
+    stands = t_pose_state(BODY, BODY.rest_m[0].copy(), wearer)
+    jumps = replace(stands, root_m=stands.root_m + (0.0, 0.2, 0.0))
+    assert abs(pull_down(stands, 2)) < 1e-6
+    assert 0.0 < pull_down(jumps, 2) < 0.02 * pull_down(jumps, 1)
