@@ -2,6 +2,8 @@
 
 Cameras that look from one side hardly tell how far away a foot is: found anew in each frame set, a foot that stands wanders
 by several centimetres along their line of sight, and little across it. There it may, and its place is a mean over longer.
+
+Early poses err, and a foot that is held does not show where it would go. So it is held the more firmly the longer it has stood.
 """
 
 from dataclasses import dataclass
@@ -22,9 +24,9 @@ class PlantedFeetParams:
     """Hysteresis of a foot's contact with the floor.
 
     Planted: ankle and toes have stayed within near_m of their mean place, and within low_m of their height in the
-    T-pose, for still_s. The place follows them with time constant follows_s. Lifted: one of them is farther than
-    far_m from the place or higher than high_m. Before cameras that look from one side: for still_from_one_side_s, and along
-    their line of sight distances count as deep times less.
+    T-pose, for still_s. The place is their mean, and follows them with time constant follows_s later; they are held there
+    firmly after firm_s. Lifted: one of them is farther than far_m from the place or higher than high_m. Before cameras that
+    look from one side: for still_from_one_side_s, and along their line of sight distances count as deep times less.
     """
 
     near_m: float = 0.025
@@ -33,6 +35,7 @@ class PlantedFeetParams:
     still_from_one_side_s: float = 0.9
     deep: float = 3.0
     follows_s: float = 3.0
+    firm_s: float = 5.0
     far_m: float = 0.05
     high_m: float = 0.06
     expires_s: float = 1.0  # over which a pose is predicted
@@ -71,6 +74,13 @@ class PlantedFeet:
         return out
 
     @property
+    def firmness(self) -> Floats:
+        """How firmly they are held there (F,), up to 1: the variance of a mean falls with the time it is taken over."""
+        share = np.minimum(self._still_s / self._params.firm_s, 1.0)
+        out: Floats = np.repeat(share[self._is_planted], 2)
+        return out
+
+    @property
     def _is_planted(self) -> NDArray[np.bool_]:
         return np.asarray(self._still_s >= self._planted_from_s)
 
@@ -95,6 +105,6 @@ class PlantedFeet:
             planted, height_m.max(axis=1) <= p.high_m, height_m.max(axis=1) <= p.low_m
         )
         self._still_s = np.where(stays, self._still_s + dt_s, 0.0)
-        lasts_s = np.where(planted, p.follows_s, np.maximum(self._still_s, 1e-3))
+        lasts_s = np.clip(self._still_s, 1e-3, p.follows_s)
         share = np.where(stays, np.minimum(dt_s / lasts_s, 1.0), 1.0)
         self._mean_m += share[:, None, None] * (place_m - self._mean_m)

@@ -93,7 +93,7 @@ def test_a_planted_foot_holds_the_leg_but_not_against_what_is_far_away() -> None
 
     def off_after_m(away_m: float) -> float:
         place_m = BODY.rest_m[[ankle]][:, [0, 2]] + (0.0, away_m)
-        term = PlantedTerm(BODY, np.array([ankle]), place_m)
+        term = PlantedTerm(BODY, np.array([ankle]), place_m, np.ones(1))
         joints_m, _ = fitter.joints(fitter.fit(body, (), 1 / 30, 4, terms=(term,)).state)
         return float(np.linalg.norm(joints_m[ankle][[0, 2]] - place_m))
 
@@ -121,3 +121,23 @@ def wandering_feet(axis: Floats, hz: float, sight: Floats) -> PlantedFeet:
         off_m = 0.05 * np.sin(9.0 * frame / hz) * axis
         feet.update(BODY.rest_m + off_m, nanoseconds(frame / hz), sight)
     return feet
+
+
+@RATES
+def test_a_foot_is_held_the_more_firmly_the_longer_it_has_stood(hz: float) -> None:
+    early, late, later = (
+        feet_after([(for_s, BODY.rest_m)], hz).firmness for for_s in (0.6, 3.0, 8.0)
+    )
+    assert (early < 0.2).all()
+    assert (early < late).all()
+    assert (late < later).all()
+    assert later == pytest.approx(1.0)
+
+
+@RATES
+def test_a_foot_that_was_found_elsewhere_at_first_is_soon_where_it_stands(hz: float) -> None:
+    first = moved(LEFT, (0.02, 0.0, 0.0))
+    feet = feet_after([(0.6, first), (2.4, BODY.rest_m)], hz)
+    assert feet.places_m[np.isin(feet.joints, LEFT), 0] == pytest.approx(
+        BODY.rest_m[LEFT, 0], abs=0.006
+    )

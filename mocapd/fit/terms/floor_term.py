@@ -57,15 +57,16 @@ class FloorTerm:
 
 
 class PlantedTerm:
-    """Joints (F,) of feet that stand, held at their places (F,2) along x and z [m, world], a `Term`."""
+    """Joints (F,) of feet that stand, held at their places (F,2) along x and z [m, world] with firmness (F,), up to 1; a
+    `Term`."""
 
     is_measured = False
 
-    def __init__(self, model: BodyModel, joints: Ints, places_m: Floats) -> None:
+    def __init__(self, model: BodyModel, joints: Ints, places_m: Floats, firmness: Floats) -> None:
         self._model, self._joints = model, joints
         self._places_m = np.ascontiguousarray(places_m)
         sd_m = np.where(np.isin(joints, _TOES), _TOES_SD_M, _ANKLE_SD_M)
-        self._information = 1.0 / sd_m**2
+        self._information = firmness / sd_m**2
 
     def add(self, posed: PosedJoints, _: Shaped, H: Floats, b: Floats, /) -> float:
         """See `Term`."""

@@ -140,7 +140,7 @@ class ClothesSolver:
         joints = self.terms.joints
         observed = joints.term(model, map(joints.detector(fitter, body, cameras), cameras.present))
         feet = np.array([INDEX["leftFoot"]])
-        planted = PlantedTerm(model, feet, np.zeros((1, 2)))
+        planted = PlantedTerm(model, feet, np.zeros((1, 2)), np.ones(1))
         terms = (*self.terms.measure(fitter, body, views, black.grey, 0), *observed, planted)
         fit = fitter.fit(body, views, TICK_S, 2, terms=terms)
         predicted_information(fit.covariance, body.velocity, 1.0, fitter.prediction_sd, [])
@@ -278,7 +278,7 @@ class ClothesSolver:
         joints = self._feet.joints
         if not len(joints):
             return ()
-        return (PlantedTerm(self.model, joints, self._feet.places_m),)
+        return (PlantedTerm(self.model, joints, self._feet.places_m, self._feet.firmness),)
 
     def _estimate(
         self,
