@@ -42,11 +42,13 @@ class SkinArrays(NamedTuple):
 
 
 class TriangleArrays(NamedTuple):
-    """The triangles of the surface; bones and weights are those of the triangle's centre."""
+    """The triangles of the surface; bones and weights are those of the triangle's centre; stiffness: what share of the pull
+    at it the bones feel."""
 
     corners: Int32s  # (T,3)
     bones: Int32s  # (T,B)
     weights: Floats  # (T,B)
+    stiffness: Floats  # (T,)
     d_centres: Floats  # (N,T,3)
 
 

@@ -9,14 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mocapd.body.arrays import Articulation, SkinArrays, TriangleArrays
-from mocapd.body.pose_space import PoseSpace, upper_body
+from mocapd.body.pose_space import SIDES, PoseSpace, upper_body
 from mocapd.body.shape import BodyShape, skeleton_of
-from mocapd.body.skeleton import PARENTS
+from mocapd.body.skeleton import INDEX, PARENTS
 from mocapd.body.surface import LEGS, join_tubes
 from mocapd.body.surface_building import rough_tubes, shape_derivatives, whole_tubes
 from mocapd.types import Floats, Ints
 
 _BONES = 4  # skin weights kept per point
+# Hands bend at the wrist, and the model's do not: what their pixels say of a forearm's direction is mostly wrong.
+_STIFFNESS_OF_HANDS = 0.2
+_HANDS = [INDEX[side + "Hand"] for side in SIDES]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,11 +60,16 @@ class BodyModel:
             ),
             "skin": SkinArrays(self.bones, self.weights),
             "surface": TriangleArrays(
-                self.triangles, self.triangle_bones, self.triangle_weights, self.d_centres
+                self.triangles, self.triangle_bones, self.triangle_weights, self._stiffness(), self.d_centres
             ),
         }  # fmt: skip
         for name, arrays in made.items():
             object.__setattr__(self, name, arrays)
+
+    def _stiffness(self) -> Floats:
+        """(T,), see `TriangleArrays`."""
+        is_hand = np.isin(self.triangle_bones[:, 0], _HANDS)
+        return np.where(is_hand, _STIFFNESS_OF_HANDS, 1.0)
 
     @property
     def n_pose(self) -> int:

@@ -3,7 +3,7 @@
 Cameras that look from one side hardly tell how far away a foot is: found anew in each frame set, a foot that stands wanders
 by several centimetres along their line of sight, and little across it. There it may, and its place is a mean over longer.
 
-Early poses err, and a foot that is held does not show where it would go. So it is held the more firmly the longer it has stood.
+Early poses err, and a foot that is held does not show where it would go. So it is held the more firmly the longer it stands.
 """
 
 from dataclasses import dataclass

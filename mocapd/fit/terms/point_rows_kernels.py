@@ -110,7 +110,7 @@ def pull_along_rays(
 
     A residual of robust_m has a quarter of its weight (Geman-McClure). centres (T,3) of the triangles in the T-pose.
     """
-    _, triangle_bones, triangle_weights, _ = surface
+    _, triangle_bones, triangle_weights, _, _ = surface
     rest, R, joints, _ = posed
     row = np.empty(3 + 3 * articulation[3].shape[0])
     cost = 0.0

@@ -76,12 +76,13 @@ def add_triangle_rows(
 ) -> None:
     """Add the pulls (T,5) on the triangles to H (P,P), b (P,), and set them to zero.
 
-    A pull is the sum of rows w n n^T (xx, xy, yy) and w r n (x, y) in the picture. With the derivative J (2,P) of the
-    centre's place there, H gets J^T (sum w n n^T) J, and b gets J^T (sum w r n). The sum is factored (Cholesky), so that each
-    triangle gives at most two rows, however many pixels it has. centres (T,3) in the T-pose [m]. H has columns for the
-    pose alone, or for pose and shape; then d_joints (N,J,3) are the derivatives of the posed joints by the shape factors.
+    A pull is the sum of rows w n n^T (xx, xy, yy) and w r n (x, y) in the picture, of which the bones feel a share, the
+    triangle's stiffness. With the derivative J (2,P) of the centre's place there, H gets J^T (sum w n n^T) J, and b gets
+    J^T (sum w r n). The sum is factored (Cholesky), so that each triangle gives at most two rows, however many pixels it
+    has. centres (T,3) in the T-pose [m]. H has columns for the pose alone, or for pose and shape; then d_joints (N,J,3) are
+    the derivatives of the posed joints by the shape factors.
     """
-    _, triangle_bones, triangle_weights, d_centres = surface
+    _, triangle_bones, triangle_weights, stiffness, d_centres = surface
     parents, group_of_joint, share_of_joint, joint_of_group, d_rest = articulation
     rest, R, joints, _ = posed
     cam_R, cam_t, fx, fy = camera
@@ -99,11 +100,15 @@ def add_triangle_rows(
     n_rows = 0
     square = np.zeros((P + 1, P + 1))
     for t in range(pulls.shape[0]):
-        xx, yy = pulls[t, 0], pulls[t, 2]
+        xx, yy = stiffness[t] * pulls[t, 0], stiffness[t] * pulls[t, 2]
         total = xx + yy
         if total == 0.0:
             continue
-        xy, bx, by = pulls[t, 1], pulls[t, 3], pulls[t, 4]
+        xy, bx, by = (
+            stiffness[t] * pulls[t, 1],
+            stiffness[t] * pulls[t, 3],
+            stiffness[t] * pulls[t, 4],
+        )
         for i in range(5):
             pulls[t, i] = 0.0
         lx = ly = along = across = 0.0

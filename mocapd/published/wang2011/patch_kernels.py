@@ -29,7 +29,7 @@ def centroid_rows(
     The centroid is taken as the mean over the samples seen of each triangle's centre, with the set of
     samples held fixed and the lens' distortion left out of the derivative.
     """
-    _, bones, weights, _ = surface
+    _, bones, weights, _, _ = surface
     rest, R, joints, _ = posed
     cam_R, cam_t, fx, fy = camera
     columns = out.shape[2]
