@@ -33,7 +33,7 @@ class FloorParams:
     jump_m: float = 0.25  # at this height the pull to the floor has lost half of its weight
 
 
-CROSSING_VIEWS = FloorParams(under_sd_m=0.03, on_floor_sd_m=0.03, jump_m=0.05)
+CROSSING_VIEWS = FloorParams(under_sd_m=0.03, on_floor_sd_m=0.03)
 
 
 class FloorTerm:

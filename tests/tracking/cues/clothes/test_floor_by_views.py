@@ -55,4 +55,4 @@ def test_before_crossing_views_the_floor_hardly_pulls_at_who_jumps() -> None:
     stands = t_pose_state(BODY, BODY.rest_m[0].copy(), wearer)
     jumps = replace(stands, root_m=stands.root_m + (0.0, 0.2, 0.0))
     assert abs(pull_down(stands, 2)) < 1e-6
-    assert 0.0 < pull_down(jumps, 2) < 0.02 * pull_down(jumps, 1)
+    assert 0.0 < pull_down(jumps, 2) < 0.15 * pull_down(jumps, 1)
