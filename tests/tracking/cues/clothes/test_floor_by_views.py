@@ -56,3 +56,9 @@ def test_before_crossing_views_the_floor_hardly_pulls_at_who_jumps() -> None:
     jumps = replace(stands, root_m=stands.root_m + (0.0, 0.2, 0.0))
     assert abs(pull_down(stands, 2)) < 1e-6
     assert 0.0 < pull_down(jumps, 2) < 0.15 * pull_down(jumps, 1)
+
+
+def test_feet_that_one_of_two_cameras_does_not_show_are_held() -> None:
+    wearer = BodyShapeEstimate(np.ones(BODY.n_shape), initial_information(BODY.space), 0.0)
+    near_the_front = t_pose_state(BODY, BODY.rest_m[0] + (0.0, 0.1, 2.2), wearer)
+    assert pull_down(near_the_front, 2) == pytest.approx(pull_down(near_the_front, 1))
