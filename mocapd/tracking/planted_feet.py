@@ -35,7 +35,7 @@ class PlantedFeetParams:
     still_from_one_side_s: float = 0.9
     deep: float = 3.0
     follows_s: float = 3.0
-    firm_s: float = 5.0
+    firm_s: float = 3.0
     far_m: float = 0.05
     high_m: float = 0.06
     expires_s: float = 1.0  # over which a pose is predicted
