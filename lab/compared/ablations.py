@@ -9,6 +9,7 @@ from mocapd.published.hecht2009.params import Params as Hecht2009Params
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 
 _SOFT_M, _SOFT_RAD = 1e3, 1e3  # standard deviations that hold nothing
+_NO_FLOOR = FloorParams(under_sd_m=_SOFT_M, on_floor_sd_m=_SOFT_M)
 _CERTAIN = 1e-6  # share of a limb's pixels, which any limb that is drawn has
 _MORE_THAN_SAME = 1.01  # share of two regions' colours that is the same, correlation of two patches
 
@@ -35,9 +36,7 @@ CLOTHES_ABLATIONS: Mapping[str, Callable[[ClothesParams], ClothesParams]] = Mapp
             p, distances=replace(p.distances, least_alike=_MORE_THAN_SAME)
         ),
         "no depths": lambda p: replace(p, depths=replace(p.depths, least_alike=_MORE_THAN_SAME)),
-        "no floor": lambda p: replace(
-            p, floor=FloorParams(under_sd_m=_SOFT_M, on_floor_sd_m=_SOFT_M)
-        ),
+        "no floor": lambda p: replace(p, floor=_NO_FLOOR, floor_before_crossing_views=_NO_FLOOR),
         "no arm search": _no_arm_search,
         "no shadows": lambda p: replace(
             p, background=replace(p.background, likely_shadow=(1.0, 0.0))
