@@ -93,7 +93,7 @@ def count(truth: Bytes, ids: list[Bytes]) -> Counts:
 def sweep_alone(truth: Bytes, picture: Bytes, roi: Roi, whitening: Whitening) -> Counts:
     """Step 1, the Gaussians alone, over the region of a work picture (H,W,3)."""
     nowhere_far = np.zeros((len(whitening.upper), *truth.shape), np.float32)
-    return _sweep(truth, ALONE_THRESHOLDS, picture, roi, whitening, nowhere_far, 0.0)
+    return sweep_assisted(truth, picture, roi, whitening, nowhere_far, 0.0, ALONE_THRESHOLDS)
 
 
 def sweep_assisted(
@@ -103,9 +103,16 @@ def sweep_assisted(
     whitening: Whitening,
     distance_px: Singles,
     prior_per_px: float,
+    thresholds: Floats = PRIOR_THRESHOLDS,
 ) -> Counts:
     """Step 3: the same with the cost C d; distance_px (10,h,w) to the colours of the rendered pose."""
-    return _sweep(truth, PRIOR_THRESHOLDS, picture, roi, whitening, distance_px, prior_per_px)
+    ids = [np.empty(truth.shape, np.uint8) for _ in thresholds]
+    for threshold, out in zip(thresholds, ids, strict=True):
+        classify(
+            picture, _NO_MASK, _NO_MASK_SHIFT, whitening.upper, whitening.offset, distance_px, prior_per_px,
+            float(threshold), roi[0], roi[1], 1, out,
+        )  # fmt: skip
+    return count(truth, ids)
 
 
 def correct_at(counts: Counts, false_rate: float) -> float:
@@ -115,24 +122,6 @@ def correct_at(counts: Counts, false_rate: float) -> float:
         false_rate, counts.false[order], counts.correct[order], left=np.nan, right=np.nan
     )
     return float(found)
-
-
-def _sweep(
-    truth: Bytes,
-    thresholds: Floats,
-    picture: Bytes,
-    roi: Roi,
-    whitening: Whitening,
-    distance_px: Singles,
-    prior_per_px: float,
-) -> Counts:
-    ids = [np.empty(truth.shape, np.uint8) for _ in thresholds]
-    for threshold, out in zip(thresholds, ids, strict=True):
-        classify(
-            picture, _NO_MASK, _NO_MASK_SHIFT, whitening.upper, whitening.offset, distance_px, prior_per_px,
-            float(threshold), roi[0], roi[1], 1, out,
-        )  # fmt: skip
-    return count(truth, ids)
 
 
 def _no_counts(n: int) -> Counts:

@@ -137,7 +137,8 @@ class Wang2011Segmenter:
         whitening = fold(self.colours, W)
         ids = np.empty((grid.height, grid.width), np.uint8)
         if distance is None:
-            distance = np.broadcast_to(np.float32(0.0), (len(whitening.upper), *ids.shape))
+            # contiguous and writable, as true distances are: else the kernel is compiled twice
+            distance = np.zeros((len(whitening.upper), *ids.shape), np.float32)
         coloured, foreground = classify(
             pixels, mask, shift, whitening.upper, whitening.offset, distance, per_sample, threshold,
             grid.x0, grid.y0, grid.stride, ids,
