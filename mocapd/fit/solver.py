@@ -141,15 +141,16 @@ class Fitter:
         """The mean direction (3,) from these cameras to the body, a unit vector; None if they see it from several sides."""
         if not self.has_small_baseline(state, views):
             return None
-        ray = np.sum([state.root_m + self._from_eyes_m[view.index] for view in views], axis=0)
-        return np.asarray(ray / np.linalg.norm(ray))
+        return self._direction(state, [view.index for view in views])
 
     def line_of_sight(self, state: MotionState, cameras: Collection[int]) -> Floats | None:
         """The unit vector (3,) to the body from the only one of these cameras; None of several, which tell its depth."""
-        if len(cameras) != 1:
-            return None
-        ray = state.root_m + self._from_eyes_m[next(iter(cameras))]
-        return np.asarray(ray / np.linalg.norm(ray))
+        return self._direction(state, cameras) if len(cameras) == 1 else None
+
+    def _direction(self, state: MotionState, cameras: Collection[int]) -> Floats:
+        """The unit vector (3,) of the mean way from these cameras to the body."""
+        way_m = np.sum([state.root_m + self._from_eyes_m[i] for i in cameras], axis=0)
+        return np.asarray(way_m / np.linalg.norm(way_m))
 
     def shape_information(self, H: Floats) -> Floats:
         """What the evidence H (P,P) says of the shape factors (n_shape,n_shape) when the pose is free within the usual range

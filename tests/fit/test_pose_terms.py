@@ -5,10 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.body.arrays import PosedJoints
-from mocapd.body.model import Shaper, build_model
-from mocapd.body.pose_space import full_body
-from mocapd.body.posing_kernels import forward_kinematics
 from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, apply_step, initial_information
@@ -23,12 +19,11 @@ from mocapd.geometry.camera_model import centre
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.types import Floats, Ints
 from tests.fit.synthetic import textured_greys
+from tests.fit.term_system import BODY, SHAPED, posed, system
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
 
-BODY = build_model(1.75, full_body())
-SHAPED = Shaper(BODY)(np.ones(BODY.n_shape))
 ROOT = BODY.rest_m[0].copy()
 CAMERAS = tuple(
     looking_at(name, np.array([x, 1.2, 2.9]), np.array([x, 0.9, 0.0]), roll_rad=0.0)
@@ -50,19 +45,6 @@ def relaxed() -> Floats:
     for side, sign in (("left", 1.0), ("right", -1.0)):
         local[INDEX[side + "UpperArm"]] = rotations.exp(np.array([0.0, 0.0, -0.9 * sign]))
     return local
-
-
-def posed(root: Floats, local: Floats) -> PosedJoints:
-    out = PosedJoints(
-        SHAPED.rest, np.empty((N_JOINTS, 3, 3)), np.empty((N_JOINTS, 3)), np.empty((N_JOINTS, 4))
-    )
-    forward_kinematics(BODY.parents, SHAPED.rest, root, local, out.R, out.joints, out.quats)
-    return out
-
-
-def system(term: Term, root: Floats, local: Floats) -> tuple[float, Floats, Floats]:
-    H, b = np.zeros((BODY.n_pose, BODY.n_pose)), np.zeros(BODY.n_pose)
-    return term.add(posed(root, local), SHAPED, H, b), H, b
 
 
 def places(root: Floats, local: Floats, triangle: Ints) -> Floats:

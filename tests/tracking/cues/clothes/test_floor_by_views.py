@@ -5,11 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mocapd.body.arrays import PosedJoints
-from mocapd.body.model import Shaper, build_model
-from mocapd.body.pose_space import full_body
-from mocapd.body.posing_kernels import forward_kinematics
-from mocapd.body.skeleton import N_JOINTS
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState, initial_information
 from mocapd.fit.solver import Fitter
@@ -18,11 +13,11 @@ from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.tracking.track_state import BodyShapeEstimate, t_pose_state
+from tests.fit.term_system import BODY, system
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels
 
-BODY = build_model(1.75, full_body())
 CHEST_M = np.array([0.0, 1.1, 0.0])
 CAMERAS = tuple(
     looking_at(name, np.array(eye_m), CHEST_M, roll_rad=0.0)
@@ -38,15 +33,7 @@ def pull_down(body: MotionState, cameras: int) -> float:
     floor, *_ = PoseTerms(BODY, 2, ClothesParams()).measure(
         fitter, body, views, lambda _: _PIXEL, 0
     )
-    shaped = Shaper(BODY)(body.factors)
-    posed = PosedJoints(
-        shaped.rest, np.empty((N_JOINTS, 3, 3)), np.empty((N_JOINTS, 3)), np.empty((N_JOINTS, 4))
-    )
-    forward_kinematics(
-        BODY.parents, shaped.rest, body.root_m, body.local_xyzw, posed.R, posed.joints, posed.quats
-    )
-    H, b = np.zeros((BODY.n_pose, BODY.n_pose)), np.zeros(BODY.n_pose)
-    floor.add(posed, shaped, H, b)
+    _, _, b = system(floor, body.root_m, body.local_xyzw)
     return float(-b[1])
 
 
