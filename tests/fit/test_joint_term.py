@@ -9,7 +9,8 @@ from mocapd.fit.terms.joint_term import JointRays, JointTerm, JointTermParams
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import to_camera
 from mocapd.types import Camera, Floats
-from tests.fit.test_pose_terms import BODY, CAMERAS, ROOT, bent, posed, relaxed, settled, system
+from tests.fit.term_system import BODY, posed, system
+from tests.fit.test_pose_terms import CAMERAS, ROOT, bent, relaxed, settled
 from tests.geometry.rigs import looking_at
 
 pytestmark = pytest.mark.kernels

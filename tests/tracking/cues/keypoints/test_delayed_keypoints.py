@@ -19,8 +19,9 @@ from mocapd.tracking.cues.keypoints.delayed_keypoints import DelayedKeypoints
 from mocapd.tracking.cues.keypoints.keypoint_detection import CameraKeypoints
 from mocapd.types import Floats
 from mocapd.vision.heatmaps.person_crop import PersonCrop
+from tests.fit.term_system import BODY
 from tests.fit.test_joint_term import CROSSING, FEET, seen_at
-from tests.fit.test_pose_terms import BODY, ROOT, relaxed
+from tests.fit.test_pose_terms import ROOT, relaxed
 
 pytestmark = pytest.mark.kernels
 

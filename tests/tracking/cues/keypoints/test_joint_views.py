@@ -33,8 +33,9 @@ from mocapd.vision.heatmaps.joint_network import (
     JointNetwork,
 )
 from mocapd.vision.heatmaps.person_crop import crop_about, middle_of
+from tests.fit.term_system import BODY
 from tests.fit.test_joint_term import CROSSING
-from tests.fit.test_pose_terms import BODY, ROOT, relaxed
+from tests.fit.test_pose_terms import ROOT, relaxed
 from tests.sim import small
 
 pytestmark = pytest.mark.kernels

@@ -9,8 +9,9 @@ from mocapd.body.skeleton import INDEX, OTHER_SIDE
 from mocapd.fit.terms.joint_term import JointRays
 from mocapd.tracking.cues.keypoints.keypoint_consensus import agreed_keypoints
 from mocapd.vision.heatmaps.joint_network import JOINTS
+from tests.fit.term_system import posed
 from tests.fit.test_joint_term import seen_at
-from tests.fit.test_pose_terms import ROOT, bent, posed
+from tests.fit.test_pose_terms import ROOT, bent
 from tests.geometry.rigs import ring
 
 pytestmark = pytest.mark.kernels
