@@ -40,6 +40,7 @@ class CameraView:
         # log-odds of the network; 0 outside its crop
         self.person_odds = np.zeros((h, w), np.float32)
         self._has_person_odds = False
+        self._newest_odds: tuple[Singles, PersonCrop] | None = None  # also of an earlier picture
         self.near: Roi | None = None  # the region about it
         self.is_covered = False  # about the body, by somebody close to the lens
         self.background = RoomBackground(h, w, params.background)
@@ -70,7 +71,9 @@ class CameraView:
         self.body[:] = 0
         self.drawn[:] = 0
         self.near = None
-        if drawn is not None:
+        if drawn is None:
+            self._newest_odds = None
+        else:
             self.near, ids = drawn
             x0, y0, x1, y1 = self.near
             here = (ids > 0).astype(np.uint8)
@@ -81,11 +84,15 @@ class CameraView:
     def mark_person(self, odds: Singles, crop: PersonCrop) -> None:
         """Stores the network's log-odds (96,96) of the person in a crop of the picture."""
         self._has_person_odds = True
-        h, w = self.person_odds.shape
-        cv2.warpAffine(
-            odds, crop.affine, (w, h), dst=self.person_odds, flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
-            borderValue=(0.0,),
-        )  # fmt: skip
+        self._newest_odds = odds, crop
+        _paste(odds, crop, self.person_odds)
+
+    def person_by_network(self) -> NDArray[np.bool_]:
+        """(h,w): what the network took for the tracked person when it looked last, at most a few pictures ago."""
+        odds = np.zeros_like(self.person_odds)
+        if self._newest_odds is not None:
+            _paste(*self._newest_odds, odds)
+        return odds > 0.0
 
     def learn_background(self, agrees: bool, ticks: int = 1) -> None:
         """Updates the background outside the marked body. agrees: the body fits the picture, so pixels without a background
@@ -112,6 +119,14 @@ class CameraView:
         narrow = np.asarray(cv2.erode(self.drawn, _OUTLINE_OFFSET), np.uint8)
         off = _outline(wide) | _outline(narrow)
         return float(edges[_outline(self.drawn)].mean()), float(edges[off].mean())
+
+
+def _paste(odds: Singles, crop: PersonCrop, out: Singles) -> None:
+    """Log-odds (96,96) of a crop as those of the picture (h,w), 0 outside."""
+    h, w = out.shape
+    cv2.warpAffine(
+        odds, crop.affine, (w, h), dst=out, flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP, borderValue=(0.0,)
+    )  # fmt: skip
 
 
 def _outline(mask: Bytes) -> NDArray[np.bool_]:

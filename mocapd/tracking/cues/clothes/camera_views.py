@@ -145,17 +145,22 @@ class CameraViews:
             self._remove_ghosts_of(i)
 
     def remove_ghosts(self) -> None:
-        """Moves ghosts from the foreground to the background; see `RoomBackground`. The marked body was rendered last."""
+        """Moves ghosts from the foreground to the background; see `RoomBackground`. The marked body was rendered last. What
+        the network takes for the person is none, be it drawn as an arm or not drawn at all: a limb that the fit lost would be
+        learned with the room, and not be found again."""
         self._each(self._remove_ghosts_of, self.present)
 
     def _remove_ghosts_of(self, i: int) -> None:
         camera, arms = self.each[i], np.zeros_like(self.each[i].drawn)
+        person = camera.person_by_network()
         if camera.near is not None:
             x0, y0, x1, y1 = camera.near
             ids, triangles = self.fitter.drawings[i].last(camera.near)
             part = self.fitter.model.part[np.maximum(triangles, 0)]
             arms[y0:y1, x0:x1] = (ids > 0) & ((part == LEFT_ARM) | (part == RIGHT_ARM))
-        camera.background.remove_ghosts(camera.picture, camera.foreground, camera.drawn, arms)
+            arms[person] = 0
+        body = camera.drawn | person
+        camera.background.remove_ghosts(camera.picture, camera.foreground, body, arms)
 
     def prepare(
         self, state: MotionState, searches_everywhere: bool, also: Callable[[int], T]
@@ -198,12 +203,14 @@ class CameraViews:
         beside = drawn == 0
         stand = np.count_nonzero(stands(before) & beside)
         camera.is_covered = bool(stand > p.covered_share * np.count_nonzero(beside))
+        odds = np.ascontiguousarray(camera.person_odds[y0:y1, x0:x1])
+        before[(before == BACKGROUND) & (odds > p.room_coloured)] = BEFORE
         ids = camera.appearance.classify(
             np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
             before,
             region_distances(drawn),
             self._floors[i].near(state.root_m, roi),
-            np.ascontiguousarray(camera.person_odds[y0:y1, x0:x1]),
+            odds,
         )
         weights = np.asarray(cv2.LUT(before, self._weights), np.uint8)
         return View(i, roi, ids, weights, dt_s)

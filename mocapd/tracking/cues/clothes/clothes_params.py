@@ -161,6 +161,8 @@ class ClothesParams:
     uncovered_s: float = 10 / 30  # between two searches for ghosts
     # interval at which the background learns the foreground, too, while no person is tracked
     absorb_s: float = 13 / 30
+    # log-odds of the network, above which what looks like the room is a person in clothes of its colour
+    room_coloured: float = 0.4
     soft: float = 60.0 / 255.0  # weight of a rendered pixel in the foreground of another region
 
     # motion from frame to frame
