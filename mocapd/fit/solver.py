@@ -11,14 +11,19 @@ import numpy as np
 
 from mocapd.body.arrays import PosedJoints, plain
 from mocapd.body.model import BodyModel, Shaped, Shaper
+from mocapd.body.pose_space import SIDES
 from mocapd.body.posing_kernels import forward_kinematics
-from mocapd.body.skeleton import N_JOINTS
+from mocapd.body.skeleton import INDEX, N_JOINTS
 from mocapd.each import Each, in_turn
 from mocapd.fit.fit_params import FitParams
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.idmap_renderer import IdMapRenderer
 from mocapd.fit.motion_state import MotionState, apply_step
-from mocapd.fit.priors.pose_prior import small_baseline_prior, wide_baseline_prior
+from mocapd.fit.priors.pose_prior import (
+    hidden_legs_prior,
+    small_baseline_prior,
+    wide_baseline_prior,
+)
 from mocapd.fit.solve_kernels import FREE_POSE, gauss_newton_step
 from mocapd.fit.stereo_depth import compared_depths
 from mocapd.fit.surface_labels import SurfaceLabels
@@ -26,11 +31,13 @@ from mocapd.fit.terms.collision_term import CollisionTerm
 from mocapd.fit.terms.id_map_term import IdMapTerm
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View, coarse
+from mocapd.geometry.camera_model import project
 from mocapd.types import Camera, Floats
 
 _USUAL_HZ = 30.0  # spreads about a prediction are those of such a frame
 # limits of human proportions
 _LIMIT_SDS, _LEAST_LIMIT = 3.0, 0.1
+_FEET = [INDEX[side + bone] for side in SIDES for bone in ("Foot", "Toes")]
 
 
 class Fitter:
@@ -58,9 +65,9 @@ class Fitter:
         self.prediction_sd = _prediction_sd(model, params)
         most = np.maximum(_LIMIT_SDS * model.space.factor_sd, _LEAST_LIMIT)
         self._factor_limits = 1.0 + np.stack([-most, most])
-        self._wide_baseline_prior, self._small_baseline_prior = (
-            plain(wide_baseline_prior(model, params)),
-            plain(small_baseline_prior(model, params)),
+        self._wide_baseline_prior, self._hidden_legs_prior, self._small_baseline_prior = (
+            plain(prior(model, params))
+            for prior in (wide_baseline_prior, hidden_legs_prior, small_baseline_prior)
         )
 
     def joints(self, state: MotionState) -> tuple[Floats, Floats]:
@@ -92,11 +99,11 @@ class Fitter:
         if motion is None:
             motion = np.diag(1.0 / (self.prediction_sd**2 * max(_USUAL_HZ * dt_s, 0.5)))
         fine = p.fine_iterations if fine is None else fine
-        priors = (
-            self._small_baseline_prior
-            if self.has_small_baseline(prediction, views)
-            else self._wide_baseline_prior
-        )
+        priors = self._wide_baseline_prior
+        if self.has_small_baseline(prediction, views):
+            priors = self._small_baseline_prior
+        elif m.space.whole and views and not self.show_feet(prediction, views):
+            priors = self._hidden_legs_prior
         evidence = held = np.zeros((n_pose, n_pose))
         coarsely = [coarse(view) for view in views]
         # a slice would be another kernel
@@ -131,11 +138,24 @@ class Fitter:
 
     def has_small_baseline(self, state: MotionState, views: Sequence[View]) -> bool:
         """Whether all cameras see the body from about the same side."""
-        rays = [state.root_m + self._from_eyes_m[view.index] for view in views]
+        return self.look_from_one_side(state, [view.index for view in views])
+
+    def look_from_one_side(self, state: MotionState, cameras: Collection[int]) -> bool:
+        """The same of cameras, by index; False of none."""
+        rays = [state.root_m + self._from_eyes_m[i] for i in cameras]
         least = np.cos(self.params.small_baseline_rad)
-        return bool(views) and all(
+        return bool(rays) and all(
             a @ b > least * np.sqrt((a @ a) * (b @ b)) for a, b in combinations(rays, 2)
         )
+
+    def show_feet(self, state: MotionState, views: Sequence[View]) -> bool:
+        """Whether two views and more have both feet within their pictures."""
+        feet_m, showing = self.joints(state)[0][_FEET], 0
+        for view in views:
+            camera = self.drawings[view.index].camera
+            feet_px = project(camera, feet_m)
+            showing += bool(((feet_px >= 0.0) & (feet_px < camera.size_px)).all())
+        return showing > 1
 
     def common_line_of_sight(self, state: MotionState, views: Sequence[View]) -> Floats | None:
         """The mean direction (3,) from these cameras to the body, a unit vector; None if they see it from several sides."""

@@ -22,11 +22,13 @@ _KIND_OF = {
 
 @dataclass(frozen=True, slots=True)
 class Carrier:
-    """cues: names of those that carry the body; shirt: it places trunk and arms; cameras: how many show the body."""
+    """cues: names of those that carry the body; shirt: it places trunk and arms; cameras: how many show the body;
+    from_one_side: all of them from about the same."""
 
     cues: str
     shirt: bool
     cameras: int
+    from_one_side: bool = False
 
     @property
     def many(self) -> bool:
@@ -76,6 +78,10 @@ _SHIRT_ARM = BoneGains(
 _SHIRT_TRUNK = BoneGains(
     1e-6, 0.0, 1.0, 60.0, sure_rad_s=60.0, goes_on=0.0, noise_rad=0.0, trust_s=1e-3
 )
+# seen from one side the body's depth wanders, and turns its bones
+_SHIRT_ARM_FROM_ONE_SIDE = replace(_SHIRT_ARM, noise_rad=0.1)
+_SHIRT_TRUNK_FROM_ONE_SIDE = replace(_SHIRT_TRUNK, noise_rad=0.03)
+SHIRT_NOISE_FROM_ONE_SIDE_M = 0.01
 
 
 def _bone_ends() -> tuple[Ints, list[str]]:
@@ -99,15 +105,15 @@ SHIRT_TRUNK_BONES = np.array(
 
 
 @cache
-def gains_of(by_shirt: bool, by_many: bool) -> tuple[Floats, Floats]:
+def gains_of(by_shirt: bool, by_many: bool, from_one_side: bool) -> tuple[Floats, Floats]:
     """Gains (8,J) of each bone for `follow_bones`, and (J,) its trust_s. See `Carrier`."""
     rows, of_clothes = [], _CLOTHES_OF_MANY if by_many else _CLOTHES
     for j, kind in enumerate(_KIND_OF_BONE):
         gains = of_clothes[kind]
         if by_shirt and kind in _ARMS:
-            gains = _SHIRT_ARM
+            gains = _SHIRT_ARM_FROM_ONE_SIDE if from_one_side else _SHIRT_ARM
         elif by_shirt and j in SHIRT_TRUNK_BONES:
-            gains = _SHIRT_TRUNK
+            gains = _SHIRT_TRUNK_FROM_ONE_SIDE if from_one_side else _SHIRT_TRUNK
         rows.append(astuple(gains))
     table = np.array(rows, np.float64).T
     return np.ascontiguousarray(table[:8]), table[8].copy()

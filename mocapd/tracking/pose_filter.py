@@ -24,6 +24,7 @@ from mocapd.tracking.bone_gains import (
     END_OF_BONE,
     LOWER,
     MANY_NOISE,
+    SHIRT_NOISE_FROM_ONE_SIDE_M,
     SHIRT_TRUNK_BONES,
     Carrier,
     gains_of,
@@ -193,7 +194,7 @@ class PoseFilter:
         legs_since_ns: int | None,
     ) -> FilterState:
         p, trust = self._params, confidence[END_OF_BONE]
-        gains, trust_s = gains_of(by.shirt, by.many)
+        gains, trust_s = gains_of(by.shirt, by.many, by.from_one_side)
         if by.shirt:
             trust[SHIRT_TRUNK_BONES] = 1.0
         elif t_ns - last.since_ns < nanoseconds(p.settles_s):
@@ -225,7 +226,9 @@ class PoseFilter:
         expected_m = last.smooth.root_m + gap_s * moving
         way_m = found.root_m - expected_m
         speed_m_s = float(np.linalg.norm(last.moving_m_s))
-        noise_m = 0.0 if by.shirt else p.noise_m * (MANY_NOISE if by.many else 1.0)
+        noise_m = p.noise_m * (MANY_NOISE if by.many else 1.0)
+        if by.shirt:
+            noise_m = SHIRT_NOISE_FROM_ONE_SIDE_M if by.from_one_side else 0.0
         share = follows[0] * moving_share(way_m, speed_m_s, memory[0], ticks, noise_m)
         root_m = expected_m + share * way_m
         moving += learned[0] * ((root_m - last.smooth.root_m) / gap_s - moving)

@@ -59,7 +59,7 @@ def publish_body(
     away_s = seconds(t_ns - state.t_ns)
     away_of_joints_s = np.full(N_JOINTS, away_s)
     confidence, uncertainty_m = np.zeros(N_JOINTS), np.full(N_JOINTS, np.inf)
-    agreement, unfiltered = np.ones(N_JOINTS), None
+    agreement, unfiltered, from_one_side = np.ones(N_JOINTS), None, False
     if state.whole is not None and clothes is not None:
         unfiltered, uncertainty_m = _pose_with_uncertainty(clothes.fitter, motion, state.whole)
         away_of_whole_s = seconds(t_ns - state.whole_ns)
@@ -76,11 +76,14 @@ def publish_body(
         away_of_joints_s[lower] = seconds(t_ns - state.whole_ns)
         confidence, uncertainty_m = by_it, of_trunk_m
         agreement = np.where(_IS_LOWER, agreement, 1.0)
+        drawings = shirt.fitter.drawings
+        showing = [i for i, one in enumerate(drawings) if one.camera.name in state.cameras]
+        from_one_side = shirt.fitter.look_from_one_side(upper, showing)
     assert unfiltered is not None
     carrier = _carrier(state)
     jumped = _doubtful_bones(state, motion, estimates, clothes) if away_s == 0.0 else ()
     skeleton = skeleton_of(shape)
-    by = Carrier(carrier, state.by_shirt, len(state.cameras))
+    by = Carrier(carrier, state.by_shirt, len(state.cameras), from_one_side)
     pose = pose_filter.step(unfiltered, confidence, t_ns, by, skeleton, jumped, state.legs_since_ns)
     joints_m = joint_positions(skeleton, pose)
     unfiltered_m = joint_positions(skeleton, unfiltered)

@@ -18,7 +18,7 @@ from tests.tracking import naive_pose_filter
 
 SKELETON = standard_skeleton(1.75)
 ARM, FOREARM, ELBOW = INDEX["leftUpperArm"], INDEX["leftLowerArm"], INDEX["leftLowerArm"]
-LEG = INDEX["leftUpperLeg"]
+LEG, SPINE = INDEX["leftUpperLeg"], INDEX["spine"]
 SURE, DOUBTFUL = np.ones(N_JOINTS), np.zeros(N_JOINTS)
 PARAMS = PoseFilterParams()
 SETTLED_S = PARAMS.settles_s + 0.1
@@ -38,9 +38,15 @@ def rad(pose: Pose, bone: int = ARM) -> float:
 class Stepped:
     """A filter that is stepped at a rate."""
 
-    def __init__(self, hz: float = 30.0, carrier: str = "clothes", cameras: int = 2) -> None:
-        self.filter, self.hz, self.carrier, self.cameras = PoseFilter(), hz, carrier, cameras
-        self.now_s = 0.0
+    def __init__(
+        self,
+        hz: float = 30.0,
+        carrier: str = "clothes",
+        cameras: int = 2,
+        from_one_side: bool = False,
+    ) -> None:
+        self.filter, self.hz, self.now_s = PoseFilter(), hz, 0.0
+        self.carrier, self.cameras, self.from_one_side = carrier, cameras, from_one_side
 
     def step(
         self,
@@ -49,7 +55,8 @@ class Stepped:
         jumped: Collection[int] = (),
         legs_since_ns: int | None = None,
     ) -> Pose:
-        by = Carrier(self.carrier, self.carrier.startswith("shirt"), self.cameras)
+        is_shirt = self.carrier.startswith("shirt")
+        by = Carrier(self.carrier, is_shirt, self.cameras, self.from_one_side)
         t_ns = round(1e9 * self.now_s)
         self.now_s += 1.0 / self.hz
         return self.filter.step(found, confidence, t_ns, by, SKELETON, jumped, legs_since_ns)
@@ -74,6 +81,18 @@ def test_the_shirts_trunk_and_confirmed_arms_are_published_as_found() -> None:
     pose = one.step(turned(0.4, x_m=0.1))
     assert rad(pose) == pytest.approx(0.4)
     assert pose.root_m[0] == pytest.approx(0.1)
+
+
+def test_the_shirt_seen_from_one_side_trembles_less_and_is_followed_as_well() -> None:
+    amplitudes = []
+    for from_one_side in (False, True):
+        one = Stepped(carrier="shirt", from_one_side=from_one_side).settle(turned(0.0))
+        path = [one.step(turned(0.01 * (-1) ** k, SPINE, x_m=0.003 * (-1) ** k)) for k in range(40)]
+        amplitudes.append([max(rad(pose, SPINE), abs(pose.root_m[0])) for pose in path[-4:]])
+        pose = one.step(turned(0.4, x_m=0.1))
+        assert rad(pose) == pytest.approx(0.4, rel=0.02)
+        assert pose.root_m[0] == pytest.approx(0.1, rel=0.02)
+    assert max(amplitudes[1]) < 0.5 * min(amplitudes[0])
 
 
 @pytest.mark.parametrize("carrier", ["clothes", "shirt"])

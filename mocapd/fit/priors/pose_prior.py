@@ -113,6 +113,16 @@ def wide_baseline_prior(model: BodyModel, p: FitParams) -> PosePriors:
     return _priors(model, p, rest, information, 0.0)
 
 
+def hidden_legs_prior(model: BodyModel, p: FitParams) -> PosePriors:
+    """The same where pictures hardly show the feet: legs go back to where they usually are. Held so where they are seen,
+    squats and kicks would be too low."""
+    wide = wide_baseline_prior(model, p)
+    rest, information = wide.rest_local.copy(), wide.rest_information.copy()
+    if model.space.whole:
+        _hold_legs(model, rest, information, ("UpperLeg", "LowerLeg"))
+    return _priors(model, p, rest, information, 0.0)
+
+
 def small_baseline_prior(model: BodyModel, p: FitParams) -> PosePriors:
     """For cameras on a small baseline: the depth is hardly observed."""
     wide = wide_baseline_prior(model, p)

@@ -3,19 +3,14 @@
 from collections.abc import Collection, Sequence
 
 from mocapd.body.model import BodyModel
-from mocapd.body.pose_space import SIDES
-from mocapd.body.skeleton import INDEX
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorTerm
 from mocapd.fit.terms.term import Term
 from mocapd.fit.view import View
-from mocapd.geometry.camera_model import project
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
 from mocapd.tracking.cues.stereo.stereo_distances import GreyPicture, stereo_distance_terms
-
-_FEET = [INDEX[side + bone] for side in SIDES for bone in ("Foot", "Toes")]
 
 
 class PoseTerms:
@@ -41,17 +36,7 @@ class PoseTerms:
         distances = stereo_distance_terms(
             fitter, drawn, views, grey, frame_index, self._params, only
         )
-        floor = self._soft_floor if self._show_feet(fitter, drawn, views) else self.floor
+        # pictures say how high feet are where views cross that show both
+        is_seen = not fitter.has_small_baseline(drawn, views) and fitter.show_feet(drawn, views)
+        floor = self._soft_floor if is_seen else self.floor
         return (floor, *distances)
-
-    @staticmethod
-    def _show_feet(fitter: Fitter, drawn: MotionState, views: Sequence[View]) -> bool:
-        """Whether views that cross show both feet, so that the pictures say how high they are."""
-        if fitter.has_small_baseline(drawn, views):
-            return False
-        feet_m, showing = fitter.joints(drawn)[0][_FEET], 0
-        for view in views:
-            camera = fitter.drawings[view.index].camera
-            feet_px = project(camera, feet_m)
-            showing += bool(((feet_px >= 0.0) & (feet_px < camera.size_px)).all())
-        return showing > 1
