@@ -40,6 +40,7 @@ class CameraView:
         # log-odds of the network; 0 outside its crop
         self.person_odds = np.zeros((h, w), np.float32)
         self._has_person_odds = False
+        self.has_new_odds = False  # of this picture
         self._newest_odds: tuple[Singles, PersonCrop] | None = None  # also of an earlier picture
         self.near: Roi | None = None  # the region about it
         self.is_covered = False  # about the body, by somebody close to the lens
@@ -63,7 +64,7 @@ class CameraView:
         self.picture = picture
         if self._has_person_odds:
             self.person_odds[:] = 0.0
-            self._has_person_odds = False
+            self._has_person_odds = self.has_new_odds = False
 
     def mark_body(self, drawn: tuple[Roi, Bytes] | None) -> None:
         """Marks the body, a region and its rendered ids (h,w), with a margin, so that the background does not learn it;
@@ -81,9 +82,10 @@ class CameraView:
             # the region has a wider margin than that
             self.body[y0:y1, x0:x1] = cv2.dilate(here, self.body_margin)
 
-    def mark_person(self, odds: Singles, crop: PersonCrop) -> None:
-        """Stores the network's log-odds (96,96) of the person in a crop of the picture."""
-        self._has_person_odds = True
+    def mark_person(self, odds: Singles, crop: PersonCrop, *, is_new: bool = True) -> None:
+        """Stores the network's log-odds (96,96) of the person in a crop of the picture. is_new: it looked at this picture,
+        not at one before."""
+        self._has_person_odds, self.has_new_odds = True, is_new
         self._newest_odds = odds, crop
         _paste(odds, crop, self.person_odds)
 

@@ -204,7 +204,8 @@ class CameraViews:
         stand = np.count_nonzero(stands(before) & beside)
         camera.is_covered = bool(stand > p.covered_share * np.count_nonzero(beside))
         odds = np.ascontiguousarray(camera.person_odds[y0:y1, x0:x1])
-        before[(before == BACKGROUND) & (odds > p.room_coloured)] = BEFORE
+        if camera.has_new_odds:  # those of an earlier picture are where a limb was
+            before[(before == BACKGROUND) & (odds > p.room_coloured)] = BEFORE
         ids = camera.appearance.classify(
             np.ascontiguousarray(camera.picture[y0:y1, x0:x1]),
             before,

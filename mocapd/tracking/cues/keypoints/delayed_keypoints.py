@@ -108,7 +108,7 @@ class DelayedKeypoints:
                 return None
             before, now = (to_camera(found.rays.camera, one) for one in (newest.joints_m, joints_m))
             crop = _moved_crop(found, before, now, fitter.drawings[i].image_scale)
-            cameras.each[i].mark_person(found.odds, crop)
+            cameras.each[i].mark_person(found.odds, crop, is_new=False)
             return _moved_rays(found.rays, before, now)
 
         return move

@@ -92,10 +92,11 @@ def test_what_the_network_saw_of_somebody_lost_protects_nobody_else(
     assert not views.each[0].person_by_network().any()
 
 
-@pytest.mark.parametrize("looked", [False, True])
+@pytest.mark.parametrize(("looked", "is_new"), [(False, True), (True, False), (True, True)])
 def test_a_limb_in_the_colour_of_the_wall_is_seen_where_the_network_sees_it(
-    views_and_body: tuple[CameraViews, MotionState], looked: bool
+    views_and_body: tuple[CameraViews, MotionState], looked: bool, is_new: bool
 ) -> None:
+    """Where it looked at an earlier picture, the limb may have gone."""
     views, body = views_and_body
     camera = views.each[0]
     picture = take(views, body, np.full((H, W, 3), WALL, np.uint8))
@@ -107,8 +108,10 @@ def test_a_limb_in_the_colour_of_the_wall_is_seen_where_the_network_sees_it(
     views.mark_body(body)
     views.update_foreground()
     if looked:
-        camera.mark_person(np.full((96, 96), 4.0, np.float32), PersonCrop(96 / W, np.zeros(2)))
+        camera.mark_person(
+            np.full((96, 96), 4.0, np.float32), PersonCrop(96 / W, np.zeros(2)), is_new=is_new
+        )
     (view,) = views.classify(body)
     x0, y0, _, _ = view.roi
     assert camera.foreground[y, x] == BACKGROUND
-    assert (view.ids[y - y0, x - x0] > 0) == looked
+    assert (view.ids[y - y0, x - x0] > 0) == (looked and is_new)

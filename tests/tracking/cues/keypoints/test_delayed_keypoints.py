@@ -40,7 +40,9 @@ class _Seen:
         self.fitter = Fitter(BODY, shirt_labels(BODY), CROSSING, [1, 1], FitParams())
         self.marked: dict[int, PersonCrop] = {}
         each = [
-            SimpleNamespace(mark_person=lambda _, crop, i=i: self.marked.update({i: crop}))
+            SimpleNamespace(
+                mark_person=lambda _, crop, *, is_new, i=i: self.marked.update({i: crop})
+            )
             for i in range(2)
         ]
         self.cameras = cast(Any, SimpleNamespace(present={0: 0.0, 1: 0.0}, each=each))
