@@ -14,15 +14,10 @@ from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.tracking.track_state import BodyShapeEstimate, t_pose_state
 from tests.fit.term_system import BODY, system
-from tests.geometry.rigs import looking_at
+from tests.fit.test_usual_legs import CAMERAS
 
 pytestmark = pytest.mark.kernels
 
-CHEST_M = np.array([0.0, 1.1, 0.0])
-CAMERAS = tuple(
-    looking_at(name, np.array(eye_m), CHEST_M, roll_rad=0.0)
-    for name, eye_m in (("front", (0.0, 1.3, 3.0)), ("side", (3.0, 1.3, 0.0)))
-)
 _PIXEL = np.zeros((1, 1), np.uint8)
 
 
