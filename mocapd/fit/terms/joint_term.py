@@ -63,13 +63,16 @@ class JointRays:
     depth_information: Floats
 
     @property
-    def equations(self) -> tuple[Floats, Floats, Floats]:
-        """Rows (N,2,3) and offsets (N,2), which give how far a place [m, world] is beside each ray, and the information
-        (N,2,2) on that [1/m^2]."""
+    def squares(self) -> tuple[Floats, Floats, Floats]:
+        """A (N,3,3), b (N,3), c (N,): the squared distance of a place x [m, world] from each ray, in its standard deviations,
+        is x' A x - 2 b' x + c."""
         R, t_m, (xx, xy, yy) = self.camera.R, self.camera.t_m, self.information.T
-        rows = R[:2] - self.xy[:, :, None] * R[2]
+        rows, offsets = R[:2] - self.xy[:, :, None] * R[2], self.xy * t_m[2] - t_m[:2]
         information = np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -2)
-        return rows, self.xy * t_m[2] - t_m[:2], information
+        weighted = information @ rows
+        b = (weighted.swapaxes(1, 2) @ offsets[:, :, None])[:, :, 0]
+        c = ((information @ offsets[:, :, None])[:, :, 0] * offsets).sum(1)
+        return rows.swapaxes(1, 2) @ weighted, b, c
 
     def of(self, joints: Collection[int]) -> "JointRays":
         """Those of these joints."""
@@ -176,10 +179,9 @@ class JointTerm:
         A, b = np.tile(_NOWHERE, (N_JOINTS, 1, 1)), np.zeros((N_JOINTS, 3))
         cameras = np.zeros(N_JOINTS)
         for one in self.rays:
-            rows, offsets, information = one.equations
-            weighted = information @ rows
-            A[one.joints] += rows.transpose(0, 2, 1) @ weighted
-            b[one.joints] += np.einsum("nij,ni->nj", weighted, offsets)
+            one_A, one_b, _ = one.squares
+            A[one.joints] += one_A
+            b[one.joints] += one_b
             cameras[one.joints] += 1.0
         sd_m = np.where(cameras > 1.0, np.linalg.eigvalsh(A)[:, 0] ** -0.5, np.inf)
         places_m: Floats = np.asarray(np.linalg.solve(A, b[:, :, None])[:, :, 0], dtype=np.float64)

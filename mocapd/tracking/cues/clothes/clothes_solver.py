@@ -29,6 +29,7 @@ from mocapd.tracking.cues.clothes.pose_terms import PoseTerms
 from mocapd.tracking.cues.clothes.region_merge import RegionSolverCache
 from mocapd.tracking.cues.clothes.regions import Region, silhouette_labels
 from mocapd.tracking.cues.clothes.wearer_appearance import WearerAppearance
+from mocapd.tracking.cues.keypoints.keypoint_consensus import agreed_keypoints
 from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
 from mocapd.tracking.cues.stereo.stereo_distances import add_stereo_depth
 from mocapd.tracking.effort import OptionalWork
@@ -138,7 +139,9 @@ class ClothesSolver:
             unseen = np.full(views[0].ids.shape, np.nan, np.float32)
             views[0] = replace(views[0], depth_m=unseen)
         joints = self.terms.joints
-        observed = joints.term(model, map(joints.detector(fitter, body, cameras), cameras.present))
+        rays = map(joints.detector(fitter, body, cameras), cameras.present)
+        found = agreed_keypoints([one for one in rays if one is not None], fitter.joints(body)[0])
+        observed = joints.term(model, found)
         feet = np.array([INDEX["leftFoot"]])
         planted = PlantedTerm(model, feet, np.zeros((1, 2)), np.ones(1))
         terms = (*self.terms.measure(fitter, body, views, black.grey, 0), *observed, planted)
