@@ -37,6 +37,7 @@ from mocapd.types import Camera, Floats
 _USUAL_HZ = 30.0  # spreads about a prediction are those of such a frame
 # limits of human proportions
 _LIMIT_SDS, _LEAST_LIMIT = 3.0, 0.1
+_FEET_SHOWN_BY = 2
 _FEET = [INDEX[side + bone] for side in SIDES for bone in ("Foot", "Toes")]
 
 
@@ -155,7 +156,9 @@ class Fitter:
             camera = self.drawings[view.index].camera
             feet_px = project(camera, feet_m)
             showing += bool(((feet_px >= 0.0) & (feet_px < camera.size_px)).all())
-        return showing > 1
+            if showing == _FEET_SHOWN_BY:
+                return True
+        return False
 
     def common_line_of_sight(self, state: MotionState, views: Sequence[View]) -> Floats | None:
         """The mean direction (3,) from these cameras to the body, a unit vector; None if they see it from several sides."""

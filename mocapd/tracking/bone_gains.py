@@ -61,13 +61,13 @@ _CLOTHES = {
 }
 # three cameras and more tremble a third as much as two: what they find is published nearly as it is, with less lag
 _MANY = 3
-MANY_NOISE = 0.5
+_MANY_NOISE = 0.5
 _CLOTHES_OF_MANY = {
     kind: replace(
         gains,
         sure=gains.doubtful + 0.7 * (gains.sure - gains.doubtful),
         goes_on=0.9,
-        noise_rad=MANY_NOISE * gains.noise_rad,
+        noise_rad=_MANY_NOISE * gains.noise_rad,
     )
     for kind, gains in _CLOTHES.items()
 }
@@ -81,7 +81,7 @@ _SHIRT_TRUNK = BoneGains(
 # seen from one side the body's depth wanders, and turns its bones
 _SHIRT_ARM_FROM_ONE_SIDE = replace(_SHIRT_ARM, noise_rad=0.1)
 _SHIRT_TRUNK_FROM_ONE_SIDE = replace(_SHIRT_TRUNK, noise_rad=0.03)
-SHIRT_NOISE_FROM_ONE_SIDE_M = 0.01
+_ROOT_NOISE_M, _SHIRT_ROOT_NOISE_FROM_ONE_SIDE_M = 0.06, 0.01
 
 
 def _bone_ends() -> tuple[Ints, list[str]]:
@@ -104,9 +104,13 @@ SHIRT_TRUNK_BONES = np.array(
 )
 
 
+def gains_of(by: Carrier) -> tuple[Floats, Floats]:
+    """Gains (8,J) of each bone for `follow_bones`, and (J,) its trust_s."""
+    return _gains_of(by.shirt, by.many, by.from_one_side)
+
+
 @cache
-def gains_of(by_shirt: bool, by_many: bool, from_one_side: bool) -> tuple[Floats, Floats]:
-    """Gains (8,J) of each bone for `follow_bones`, and (J,) its trust_s. See `Carrier`."""
+def _gains_of(by_shirt: bool, by_many: bool, from_one_side: bool) -> tuple[Floats, Floats]:
     rows, of_clothes = [], _CLOTHES_OF_MANY if by_many else _CLOTHES
     for j, kind in enumerate(_KIND_OF_BONE):
         gains = of_clothes[kind]
@@ -117,3 +121,10 @@ def gains_of(by_shirt: bool, by_many: bool, from_one_side: bool) -> tuple[Floats
         rows.append(astuple(gains))
     table = np.array(rows, np.float64).T
     return np.ascontiguousarray(table[:8]), table[8].copy()
+
+
+def root_noise_m(by: Carrier) -> float:
+    """How far from where it is expected the root of a body that rests is found at most [m]."""
+    if by.shirt:
+        return _SHIRT_ROOT_NOISE_FROM_ONE_SIDE_M if by.from_one_side else 0.0
+    return _ROOT_NOISE_M * (_MANY_NOISE if by.many else 1.0)

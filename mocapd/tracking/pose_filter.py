@@ -23,11 +23,10 @@ from mocapd.geometry import rotations
 from mocapd.tracking.bone_gains import (
     END_OF_BONE,
     LOWER,
-    MANY_NOISE,
-    SHIRT_NOISE_FROM_ONE_SIDE_M,
     SHIRT_TRUNK_BONES,
     Carrier,
     gains_of,
+    root_noise_m,
 )
 from mocapd.tracking.pose_filter_kernels import follow_bones, moving_share
 from mocapd.tracking.trunk_and_legs import LOWER_BONES
@@ -41,15 +40,13 @@ _HALVINGS = 10  # bisection steps: resolves a step of a metre to a millimetre
 
 @dataclass(frozen=True, slots=True)
 class PoseFilterParams:
-    """learns: speed gain at full confidence; noise_m: largest noise of the root of a resting body, without the shirt;
-    settles_s: a new body is published unfiltered for this long [s].
+    """learns: speed gain at full confidence; settles_s: a new body is published unfiltered for this long [s].
 
     A correction ends within approach_s [s]; its joints move at approach_m_s or faster at any frame rate, but by step_m at
     most in a frame. A joint faster than leap_m_s within approach_s of a change has moved to another pose.
     """
 
     learns: float = 0.65
-    noise_m: float = 0.06
     settles_s: float = 0.4
     approach_s: float = 0.25
     approach_m_s: float = 1.5
@@ -194,7 +191,7 @@ class PoseFilter:
         legs_since_ns: int | None,
     ) -> FilterState:
         p, trust = self._params, confidence[END_OF_BONE]
-        gains, trust_s = gains_of(by.shirt, by.many, by.from_one_side)
+        gains, trust_s = gains_of(by)
         if by.shirt:
             trust[SHIRT_TRUNK_BONES] = 1.0
         elif t_ns - last.since_ns < nanoseconds(p.settles_s):
@@ -226,10 +223,7 @@ class PoseFilter:
         expected_m = last.smooth.root_m + gap_s * moving
         way_m = found.root_m - expected_m
         speed_m_s = float(np.linalg.norm(last.moving_m_s))
-        noise_m = p.noise_m * (MANY_NOISE if by.many else 1.0)
-        if by.shirt:
-            noise_m = SHIRT_NOISE_FROM_ONE_SIDE_M if by.from_one_side else 0.0
-        share = follows[0] * moving_share(way_m, speed_m_s, memory[0], ticks, noise_m)
+        share = follows[0] * moving_share(way_m, speed_m_s, memory[0], ticks, root_noise_m(by))
         root_m = expected_m + share * way_m
         moving += learned[0] * ((root_m - last.smooth.root_m) / gap_s - moving)
         if legs_since_ns is not None and t_ns - legs_since_ns < nanoseconds(p.settles_s):

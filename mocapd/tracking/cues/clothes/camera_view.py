@@ -37,11 +37,10 @@ class CameraView:
         self.foreground = np.zeros((h, w), np.uint8)
         self.body = np.zeros((h, w), np.uint8)  # the body with a margin, or a possible person
         self.drawn = np.zeros((h, w), np.uint8)  # the tracked body
-        # log-odds of the network; 0 outside its crop
+        # log-odds of the network in this frame set; 0 outside its crop
         self.person_odds = np.zeros((h, w), np.float32)
-        self._has_person_odds = False
-        self.has_new_odds = False  # of this picture
-        self._newest_odds: tuple[Singles, PersonCrop] | None = None  # also of an earlier picture
+        self.has_new_odds = False  # of this very picture
+        self._newest_odds: tuple[Singles, PersonCrop] | None = None  # also of an earlier frame set
         self.near: Roi | None = None  # the region about it
         self.is_covered = False  # about the body, by somebody close to the lens
         self.background = RoomBackground(h, w, params.background)
@@ -62,9 +61,8 @@ class CameraView:
     def take(self, picture: Bytes) -> None:
         """Stores a work picture (h,w,3), in which nobody is marked yet."""
         self.picture = picture
-        if self._has_person_odds:
-            self.person_odds[:] = 0.0
-            self._has_person_odds = self.has_new_odds = False
+        self.person_odds[:] = 0.0
+        self.has_new_odds = False
 
     def mark_body(self, drawn: tuple[Roi, Bytes] | None) -> None:
         """Marks the body, a region and its rendered ids (h,w), with a margin, so that the background does not learn it;
@@ -85,8 +83,7 @@ class CameraView:
     def mark_person(self, odds: Singles, crop: PersonCrop, *, is_new: bool = True) -> None:
         """Stores the network's log-odds (96,96) of the person in a crop of the picture. is_new: it looked at this picture,
         not at one before."""
-        self._has_person_odds, self.has_new_odds = True, is_new
-        self._newest_odds = odds, crop
+        self.has_new_odds, self._newest_odds = is_new, (odds, crop)
         _paste(odds, crop, self.person_odds)
 
     def person_by_network(self) -> NDArray[np.bool_]:
