@@ -34,6 +34,7 @@ from mocapd.fit.view import View, coarse
 from mocapd.geometry.camera_model import project
 from mocapd.types import Camera, Floats
 
+_CLOSE_SDS = 0.5  # a step by less, in the spread of predictions, is a small one
 _USUAL_HZ = 30.0  # spreads about a prediction are those of such a frame
 # limits of human proportions
 _LIMIT_SDS, _LEAST_LIMIT = 3.0, 0.1
@@ -100,8 +101,11 @@ class Fitter:
         if motion is None:
             motion = np.diag(1.0 / (self.prediction_sd**2 * max(_USUAL_HZ * dt_s, 0.5)))
         fine = p.fine_iterations if fine is None else fine
-        priors = self._wide_baseline_prior
-        if self.has_small_baseline(prediction, views):
+        priors, from_one_side = (
+            self._wide_baseline_prior,
+            self.has_small_baseline(prediction, views),
+        )
+        if from_one_side:
             priors = self._small_baseline_prior
         elif m.space.whole and views and not self.show_feet(prediction, views):
             priors = self._hidden_legs_prior
@@ -109,8 +113,9 @@ class Fitter:
         coarsely = [coarse(view) for view in views]
         # a slice would be another kernel
         shape_information = np.ascontiguousarray(prediction.information)
-        for k in range(iterations):
-            is_fine, body = k >= iterations - fine, self.shaper(state.factors)
+        k, first_fine = 0, iterations - fine
+        while k < iterations:
+            is_fine, body = k >= first_fine, self.shaper(state.factors)
             # proportions are a matter of a few pixels
             n_shape = m.n_shape if learn_shape and is_fine else 0
             search = self._id_maps.search(k / max(iterations - 1, 1), is_fine, k & 1)
@@ -130,6 +135,10 @@ class Fitter:
             root_m, local_xyzw = apply_step(m, state.root_m, state.local_xyzw, step[:n_pose])
             factors = state.factors + step[n_pose:] if n_shape else state.factors
             state = MotionState(root_m, local_xyzw, state.velocity, factors, state.information)
+            # where views cross, what is that close gains nothing by further coarse looks
+            is_close = np.abs(step[:n_pose] / self.prediction_sd).max() < _CLOSE_SDS
+            enough = bool(views) and not from_one_side and is_close
+            k = first_fine if enough and k < first_fine else k + 1
         counts = self._id_maps.counts(views)
         misplaced, in_depth, nearer_px = compared_depths(self.drawings, views, p)
         return Fit(
