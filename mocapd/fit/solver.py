@@ -135,10 +135,10 @@ class Fitter:
             root_m, local_xyzw = apply_step(m, state.root_m, state.local_xyzw, step[:n_pose])
             factors = state.factors + step[n_pose:] if n_shape else state.factors
             state = MotionState(root_m, local_xyzw, state.velocity, factors, state.information)
-            # where views cross, what is that close gains nothing by further coarse looks
+            # where views cross, two looks at all pixels do the rest of what is that close
             is_close = np.abs(step[:n_pose] / self.prediction_sd).max() < _CLOSE_SDS
-            enough = bool(views) and not from_one_side and is_close
-            k = first_fine if enough and k < first_fine else k + 1
+            hurries = bool(views) and not from_one_side and fine > 1 and is_close
+            k = first_fine if hurries and k < first_fine else k + 1
         counts = self._id_maps.counts(views)
         misplaced, in_depth, nearer_px = compared_depths(self.drawings, views, p)
         return Fit(

@@ -1,6 +1,6 @@
 """The interface of a hypothesis: an alternative pose, tested against the pictures of one frame set.
 
-`best_start` fits again from other poses, with the pictures classified again about each.
+`refits` fits again from other poses, with the pictures classified again about each.
 """
 
 from collections.abc import Callable, Sequence
@@ -76,20 +76,19 @@ class PoseHypothesis(Protocol):
         ...
 
 
-def best_start(
+def refits(
     now: ScoredFit,
     at: HypothesisContext,
     starts: Sequence[tuple[MotionState, tuple[str, ...]]],
     iterations: int,
-    gained: float,
-    farther: float,
+    farther: float = 0.0,
     doubted: JointTerm | None = None,
-) -> ScoredFit:
-    """The cheapest of the present fit and those that start at `starts`, each with the parts that it changes.
+) -> list[tuple[ScoredFit, float]]:
+    """Fits from each of `starts`, given with the parts that it changes, and how much less than the present fit each costs
+    [disagreeing pixels]; none where fewer cameras see it.
 
-    gained: by how much the cost must fall [disagreeing pixels]; farther: how much more it must fall for limbs that are
-    farther away [disagreeing pixels/rad^2]; doubted: keypoints that do not count where all of the body changes, since it
-    starts there: the pictures must confirm it without them.
+    farther: cost of limbs that are farther away [disagreeing pixels/rad^2]; doubted: keypoints that do not count where all of
+    the body changes, since it starts there: the pictures must confirm it without them.
     """
     fitter = at.solvers.fitter
     here_xyzw = now.fit.state.local_xyzw[_LONG_BONES]
@@ -97,7 +96,7 @@ def best_start(
     def cost_of(fit: Fit, keypoints: JointTerm) -> float:
         return float(keypoints.costs(fitter.joints(fit.state)[0]).sum())
 
-    best = now
+    out = []
     for start, changed in starts:
         views = at.evidence.classify(start)
         if len(views) < len(now.views):
@@ -110,6 +109,11 @@ def best_start(
         gain = now.fit.cost_for_any_pose - fit.cost_for_any_pose - farther * away_rad2
         if WHOLE in changed and doubted is not None:
             gain -= cost_of(now.fit, doubted) - cost_of(fit, doubted)
-        if gain > gained:
-            best, gained = ScoredFit(fit, views, terms, changed), gain
-    return best
+        out.append((ScoredFit(fit, views, terms, changed), gain))
+    return out
+
+
+def cheapest(now: ScoredFit, others: Sequence[tuple[ScoredFit, float]], least: float) -> ScoredFit:
+    """Of these fits with their gains the one that gains most; the present one, if none gains more than `least`."""
+    best, gain = max(others, key=lambda one: one[1], default=(now, least))
+    return best if gain > least else now

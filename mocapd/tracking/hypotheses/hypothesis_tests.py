@@ -7,7 +7,13 @@ import numpy as np
 from mocapd.fit.limbs.two_bone_ik import LIMBS
 from mocapd.tracking.base import Probe
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
-from mocapd.tracking.hypotheses.base import HypothesisContext, PoseHypothesis, ScoredFit, best_start
+from mocapd.tracking.hypotheses.base import (
+    HypothesisContext,
+    PoseHypothesis,
+    ScoredFit,
+    cheapest,
+    refits,
+)
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
 
 _ENDS = [limb.end for limb in LIMBS.values()]
@@ -79,7 +85,7 @@ class MovedLimbs:
         moved_m = (here_m[_ENDS] - here_m[0]) - (predicted_m[_ENDS] - predicted_m[0])
         if np.linalg.norm(moved_m, axis=1).max() <= _MOVED_M:
             return now
-        return best_start(now, at, [(now.fit.state, now.changed)], _ITERATIONS, _GAIN, 0.0)
+        return cheapest(now, refits(now, at, [(now.fit.state, now.changed)], _ITERATIONS), _GAIN)
 
 
 class HypothesisTests:

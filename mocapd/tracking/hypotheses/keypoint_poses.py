@@ -24,7 +24,13 @@ from mocapd.tracking.cues.keypoints.limbs_at_keypoints import (
     limbs_off_crossings,
     with_limbs_at_keypoints,
 )
-from mocapd.tracking.hypotheses.base import WHOLE, HypothesisContext, ScoredFit, best_start
+from mocapd.tracking.hypotheses.base import (
+    WHOLE,
+    HypothesisContext,
+    ScoredFit,
+    cheapest,
+    refits,
+)
 from mocapd.types import Floats
 
 _CROSSINGS_S = 2 * TICK_S  # between tries of limbs where rays cross, in sets with new keypoints
@@ -44,6 +50,8 @@ class KeypointPoseParams:
     fit_iterations: int = 4  # of a fit to the pictures from there
     loose_s: float = 0.3  # the prior is as weak as a prediction over this time
     gain: float = 5.0  # cost decrease needed to accept it [disagreeing pixels]
+    denied: float = 20.0  # cost increase above which parts are not tried there again
+    denied_rest_s: float = 0.15  # for so long
     # further decrease needed for limbs that are farther away, before two cameras [disagreeing pixels/rad^2]
     farther: float = 5.0
 
@@ -144,6 +152,7 @@ class KeypointPoses:
     def reset(self) -> None:
         """See PoseHypothesis."""
         self._reversed_looks = 0
+        self._tried_from: dict[tuple[str, ...], int] = {}  # ticks, of parts that were denied
 
     def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """See PoseHypothesis."""
@@ -151,37 +160,41 @@ class KeypointPoses:
             fit_to_keypoints(at.solvers.fitter, now.fit.state, joints, (), self._params)
 
     def test(self, now: ScoredFit, at: HypothesisContext) -> ScoredFit:
-        """See `best_keypoint_pose`. Unchanged without detected keypoints."""
+        """The cheapest of the present fit and those that start at the keypoints. Unchanged without detected keypoints."""
         p, fitter = self._params, at.solvers.fitter
         for joints in at.joints:
             turn_rad = joints.turn_rad(fitter.joints(now.fit.state)[0])
             crossing = not fitter.has_small_baseline(now.fit.state, now.views)
-            is_reversed = crossing and abs(turn_rad) > p.reversed_rad
-            self._reversed_looks = self._reversed_looks + 1 if is_reversed else 0
-            now = best_keypoint_pose(
-                now, at, joints, p, self._reversed_looks >= p.reversed_looks, crossing
-            )
+            says_reversed = crossing and abs(turn_rad) > p.reversed_rad
+            self._reversed_looks = self._reversed_looks + 1 if says_reversed else 0
+            # looks that say so for long are believed beside pictures that deny it
+            believed = self._reversed_looks >= p.reversed_looks
+            # what rays that cross say of a limb's place does not hang on where it was thought to be
+            farther = p.farther if len(joints.rays) < LEAST_CAMERAS else 0.0
+            starts = self._starts(now, at, joints, crossing)
+            if not believed:
+                starts = [one for one in starts if self._tried_from.get(one[1], 0) <= at.ticks.last]
+            doubted = None if believed else joints
+            others = refits(now, at, starts, p.fit_iterations, farther, doubted)
+            self._rest_denied(others, at)
+            now = cheapest(now, others, p.gain)
         return now
 
+    def _starts(
+        self, now: ScoredFit, at: HypothesisContext, joints: JointTerm, crossing: bool
+    ) -> list[tuple[MotionState, tuple[str, ...]]]:
+        """See `keypoint_starts`; each limb alone not where views hide its depth."""
+        held = [one for one in now.terms if not one.is_measured and one is not joints]
+        return keypoint_starts(
+            at.solvers.fitter, now.fit, joints, held, self._params, at.trunk_prior is not None, crossing,
+            at.ticks.due(_CROSSINGS_S, TICK_S),
+        )  # fmt: skip
 
-def best_keypoint_pose(
-    now: ScoredFit,
-    at: HypothesisContext,
-    joints: JointTerm,
-    params: KeypointPoseParams,
-    is_reversed: bool = False,
-    each_alone: bool = False,
-) -> ScoredFit:
-    """The cheapest of the present fit and those that start at the keypoints. is_reversed: these alone say that the body faces
-    the other way; each_alone: see `keypoint_starts`, not where views hide the depth of a limb."""
-    fitter = at.solvers.fitter
-    held = [one for one in now.terms if not one.is_measured and one is not joints]
-    starts = keypoint_starts(
-        fitter, now.fit, joints, held, params, at.trunk_prior is not None, each_alone,
-        at.ticks.due(_CROSSINGS_S, TICK_S),
-    )  # fmt: skip
-    # what rays that cross say of a limb's place does not hang on where it was thought to be
-    farther = params.farther if len(joints.rays) < LEAST_CAMERAS else 0.0
-    return best_start(
-        now, at, starts, params.fit_iterations, params.gain, farther, None if is_reversed else joints
-    )  # fmt: skip
+    def _rest_denied(
+        self, others: Sequence[tuple[ScoredFit, float]], at: HypothesisContext
+    ) -> None:
+        """What pictures deny clearly now, they deny a moment later, too."""
+        rest = round(self._params.denied_rest_s / TICK_S)
+        for one, gain in others:
+            if gain < -self._params.denied:
+                self._tried_from[one.changed] = at.ticks.last + rest
