@@ -236,16 +236,13 @@ class ShirtCue:
         self, wearer: BodyShapeEstimate, present: dict[int, float], frame_index: int
     ) -> ShirtEstimate | None:
         p, s = self.params, self.model.n_shape
-        sightings = [
-            sighting
-            for i in present
-            if (
-                sighting := detection.detect_shirt(
-                    i, self.segmenters.each[i], self._database, p.neighbours
-                )
-            )
-            is not None
-        ]
+        seen = self.fitter.each(
+            lambda i: detection.detect_shirt(
+                i, self.segmenters.each[i], self._database, p.neighbours
+            ),
+            present,
+        )
+        sightings = [one for one in seen if one is not None]
         states = detection.hypotheses(
             sightings, self._cameras, self._database, wearer.factors[:s], wearer.information[:s, :s],
             self.model.n_pose,

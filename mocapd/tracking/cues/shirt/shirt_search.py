@@ -19,6 +19,7 @@ from mocapd.types import Camera, Floats
 
 WINDOWS = np.array([8, 12, 17, 23, 30, 40])  # sides of find_shirt [cells of 4 work px]: six scales
 _APART_M = 0.5  # rays to the two crops that miss each other by more mean two things
+_SOMETHING = 0.1  # of what is drawn or seen: other things explain less than that, mostly
 _LOOSE_S = 0.4  # a hypothesis is held as loosely as a prediction over this time
 
 
@@ -100,10 +101,8 @@ def hypotheses(
 
 
 def best_fit(fitter: Fitter, states: Sequence[MotionState], views: Sequence[View]) -> Fit | None:
-    """Fit all hypotheses a little, the best three more; the one of least cost, None when there is none."""
-    if not states:
-        return None
+    """Fit all hypotheses a little, the best three that explain something more; the one of least cost, None without any."""
     first = [fitter.fit(s, views, _LOOSE_S, 2, fine=1) for s in states]
-    first.sort(key=lambda fit: fit.cost)
+    first = sorted((f for f in first if f.explained > _SOMETHING), key=lambda fit: fit.cost)
     more = [fitter.fit(f.state, views, _LOOSE_S, 4) for f in first[:3]]
-    return min(more, key=lambda fit: fit.cost)
+    return min(more, key=lambda fit: fit.cost, default=None)
