@@ -17,6 +17,8 @@ class FitParams:
     last_radius_px: int = 7
     # the last ones, at all work pixels; the others at every second each way
     fine_iterations: int = 2
+    # where views cross, a step by less goes on to all work pixels [spreads of a prediction]; 0: none does
+    close_sds: float = 0.0
     edge_weight: float = 1.0  # weight of an edge in place against a pixel that disagrees, fine
     row_weight: float = 0.06  # inverse variance of a pixel's residual; neighbours are correlated
 

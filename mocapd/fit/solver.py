@@ -34,7 +34,6 @@ from mocapd.fit.view import View, coarse
 from mocapd.geometry.camera_model import project
 from mocapd.types import Camera, Floats
 
-_CLOSE_SDS = 0.5  # a step by less, in the spread of predictions, is a small one
 _USUAL_HZ = 30.0  # spreads about a prediction are those of such a frame
 # limits of human proportions
 _LIMIT_SDS, _LEAST_LIMIT = 3.0, 0.1
@@ -136,7 +135,7 @@ class Fitter:
             factors = state.factors + step[n_pose:] if n_shape else state.factors
             state = MotionState(root_m, local_xyzw, state.velocity, factors, state.information)
             # where views cross, two looks at all pixels do the rest of what is that close
-            is_close = np.abs(step[:n_pose] / self.prediction_sd).max() < _CLOSE_SDS
+            is_close = np.abs(step[:n_pose] / self.prediction_sd).max() < p.close_sds
             hurries = bool(views) and not from_one_side and fine > 1 and is_close
             k = first_fine if hurries and k < first_fine else k + 1
         counts = self._id_maps.counts(views)

@@ -1,11 +1,13 @@
-"""A worker thread for half of a tracker's cameras, so that a frame set takes little longer than one frame.
+"""A worker thread beside the tracker's own, so that a frame set of several cameras takes little longer than half of them.
 
-A caller that waits for a job which has not started runs it itself, as an idle processor wakes late.
+Both take cameras from the same heap: whoever is done first takes the next, as cameras take unlike long and an idle processor
+wakes late.
 """
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
+from itertools import count
 from queue import SimpleQueue
 from threading import Lock, Thread
 from typing import Any, Generic, TypeVar, cast
@@ -22,67 +24,58 @@ def each_camera() -> Each:
 
 
 def map_in_two_threads(work: Callable[[T], R], of: Iterable[T]) -> list[R]:
-    """See Each. The caller runs the first half, the worker thread the second; the caller takes over a second half that has
-    not started."""
+    """See Each. The caller and the worker thread take one after another; what one raises is raised when all are done."""
     things = list(of)
     if len(things) < 2:
         return in_turn(work, things)
-    half = (len(things) + 1) // 2
-    job = _Job(lambda: in_turn(work, things[half:]))
+    job = _Job(work, things)
     _worker_queue().put(job)
-    try:
-        results = in_turn(work, things[:half])
-    finally:
-        job.end()
-    return results + job.result()
+    return job.results()
 
 
-class _Job(Generic[R]):
-    """Work that runs once: in the worker thread, or in the waiting thread if that comes first."""
+class _Job(Generic[T, R]):
+    """Work on several things, each of which is taken once, by whichever thread comes first."""
 
-    def __init__(self, work: Callable[[], R]) -> None:
-        self._work, self._begun, self._over = work, Lock(), Lock()
-        self._over.acquire()
-        self._result: R | None = None
+    def __init__(self, work: Callable[[T], R], things: Sequence[T]) -> None:
+        self._work, self._things = work, things
+        self._results: list[R | None] = [None] * len(things)
         self._error: BaseException | None = None
+        self._next, self._at_work = count(), Lock()
 
-    def do(self) -> None:
-        """Runs the work unless it has started."""
-        if not self._begun.acquire(blocking=False):
-            return
-        try:
-            self._result = self._work()
-        except BaseException as error:  # noqa: BLE001 - `result` raises it
-            self._error = error
-        finally:
-            self._over.release()
+    def help(self) -> None:
+        """The worker thread's part."""
+        with self._at_work:
+            self._take()
 
-    def end(self) -> None:
-        """Runs or awaits the work."""
-        self.do()
-        with self._over:
+    def results(self) -> list[R]:
+        """The caller's part; the results in order, or the exception, of all."""
+        self._take()
+        with self._at_work:  # by now the other thread holds it, or finds nothing left
             pass
-
-    def result(self) -> R:
-        """The result, or the exception, of the work."""
-        self.end()
         if self._error is not None:
             raise self._error
-        return cast(R, self._result)
+        return cast(list[R], self._results)
+
+    def _take(self) -> None:
+        while (i := next(self._next)) < len(self._things):
+            try:
+                self._results[i] = self._work(self._things[i])
+            except BaseException as error:  # noqa: BLE001 - `results` raises it
+                self._error = error
 
 
 @cache
-def _worker_queue() -> "SimpleQueue[_Job[Any]]":
+def _worker_queue() -> "SimpleQueue[_Job[Any, Any]]":
     """The queue of one worker thread for all trackers of the process. A bare queue and bare locks: an executor's futures
     would cost half a millisecond for the twenty jobs of a frame set."""
-    jobs: SimpleQueue[_Job[Any]] = SimpleQueue()
+    jobs: SimpleQueue[_Job[Any, Any]] = SimpleQueue()
     Thread(target=_serve, args=(jobs,), name="cameras", daemon=True).start()
     return jobs
 
 
-def _serve(jobs: "SimpleQueue[_Job[Any]]") -> None:
+def _serve(jobs: "SimpleQueue[_Job[Any, Any]]") -> None:
     while True:
-        jobs.get().do()
+        jobs.get().help()
 
 
 def _has_two_processors() -> bool:

@@ -128,7 +128,7 @@ class MotionMonitorParams:
 class ClothesParams:
     """Parameters of the clothes cue."""
 
-    fit: FitParams = field(default_factory=lambda: FitParams(iterations=6))
+    fit: FitParams = field(default_factory=lambda: FitParams(iterations=6, close_sds=0.5))
     # learned colours confirm less than the shirt's; hands belong to the forearm's region
     limbs: LimbSearchParams = field(
         default_factory=lambda: LimbSearchParams(
