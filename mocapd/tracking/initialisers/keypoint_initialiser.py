@@ -16,6 +16,7 @@ from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.floor_term import FloorTerm
+from mocapd.fit.terms.joint_term import JointRays, JointTerm
 from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, rays
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
@@ -53,6 +54,15 @@ class KeypointCandidate:
     off_sds2: float
     apart_m: float
     lowest_m: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KeypointPose:
+    """A body through keypoints alone, with these and the places (J,3) where their rays meet, see `triangulated_joints`."""
+
+    state: MotionState
+    joints: JointTerm
+    places_m: Floats
 
 
 class KeypointInitialiser:
@@ -131,48 +141,63 @@ class KeypointInitialiser:
     ) -> KeypointCandidate | None:
         """A pose about middle_m (3,) for these blobs, of the cameras that are present now; None if the network is unsure of
         the keypoints or sees no trunk."""
-        p, fitter = self._params, self._silhouettes
-        views = views_of(person, self._views.present)
-        state = _upright_about(fitter, middle_m, factors, information)
-        hips_m = state.root_m
-        for _ in range(p.looks):
+        fitter, posed = self._silhouettes, None
+        state = upright_about(fitter, middle_m, factors, information)
+        for _ in range(self._params.looks):
             detect = self._joints.detector(fitter, state, self._views)
-            terms = self._joints.term(fitter.model, fitter.each(detect, person.blobs))
-            if not terms or len(terms[0].rays) < len(views):
-                return None
-            joints = terms[0]
-            if max(joints.median_spreads_m(p.least_joints)) > p.hopeless_m:
-                return None
-            places_m = triangulated_joints(joints.rays, hips_m, p.middle_sd_m)
-            posed = pose_through(fitter, places_m, factors, information)
+            posed = self.pose(fitter.each(detect, person.blobs), state)
             if posed is None:
                 return None
-            held = (self._floor, joints.trusting)
-            state = fitter.fit(posed, (), self._start.loose_s, p.iterations, terms=held).state
-            hips_m = state.root_m
+            state = posed.state
+        return None if posed is None else self.candidate(posed, person, shadows)
+
+    def pose(self, rays: Sequence[JointRays | None], about: MotionState) -> KeypointPose | None:
+        """A pose through all these keypoints, which were detected about a body; None without one camera's, if the network is
+        unsure of them, or if it sees no trunk."""
+        p, fitter = self._params, self._silhouettes
+        terms = self._joints.term(fitter.model, rays)
+        if not terms or len(terms[0].rays) < len(rays):
+            return None
+        joints = terms[0]
+        if max(joints.median_spreads_m(p.least_joints)) > p.hopeless_m:
+            return None
+        places_m = triangulated_joints(joints.rays, about.root_m, p.middle_sd_m)
+        posed = pose_through(fitter, places_m, about.factors, about.information)
+        if posed is None:
+            return None
+        held = (self._floor, joints.trusting)
+        state = fitter.fit(posed, (), self._start.loose_s, p.iterations, terms=held).state
+        return KeypointPose(state, joints, places_m)
+
+    def candidate(
+        self, posed: KeypointPose, person: PersonCandidate, shadows: bool
+    ) -> KeypointCandidate:
+        """The pose fitted to keypoints and silhouettes."""
+        fitter, joints = self._silhouettes, posed.joints
         fit = fit_to_blobs(
-            fitter, views, state, self._start.iterations, (self._floor, joints), self._start,
+            fitter, views_of(person, self._views.present), posed.state, self._start.iterations, (self._floor, joints),
+            self._start,
         )  # fmt: skip
         joints_m = fitter.joints(fit.state)[0]
-        has_place = np.isfinite(places_m[:, 0])
-        apart_m = float(np.linalg.norm(places_m - joints_m, axis=1)[has_place].mean())
+        has_place = np.isfinite(posed.places_m[:, 0])
+        apart_m = float(np.linalg.norm(posed.places_m - joints_m, axis=1)[has_place].mean())
         return KeypointCandidate(
             fit,
             person,
             shadows,
-            max(joints.median_spreads_m(p.least_joints)),
+            max(joints.median_spreads_m(self._params.least_joints)),
             joints.worst_off_sds2(joints_m),
             apart_m,
             float(joints_m[:, 1].min()),
         )
 
-    def is_person(self, one: KeypointCandidate) -> bool:
-        """True if keypoints and silhouettes agree on a person on the floor."""
+    def is_person(self, one: KeypointCandidate, spread_m: float | None = None) -> bool:
+        """True if keypoints and silhouettes agree on a person on the floor. spread_m: its largest, if not the usual."""
         p = self._params
         low_m, high_m = p.lowest_m
         return (
             one.fit.explained >= p.explained + (p.shadows_more if one.shadows else 0.0)
-            and one.spread_m <= p.spread_m
+            and one.spread_m <= (p.spread_m if spread_m is None else spread_m)
             and one.off_sds2 <= p.off_sds2
             and one.apart_m <= p.apart_m
             and low_m <= one.lowest_m <= high_m
@@ -225,7 +250,7 @@ class KeypointInitialiser:
         return best
 
 
-def _upright_about(
+def upright_about(
     fitter: Fitter, middle_m: Floats, factors: Floats, information: Floats
 ) -> MotionState:
     """An upright body whose crop centre (see `middle_of`) is at middle_m (3,)."""

@@ -108,7 +108,7 @@ class PersonSearch:
         self._hull_params = params.hull_start
         self._scales = [view.image_scale for view in views.each]
         self._motion = MotionMonitor(params.motion_monitor)
-        self._by_keypoints = KeypointInitialiser(
+        self.by_keypoints = KeypointInitialiser(
             silhouettes, floor, joints, views, cameras, params.start, params.keypoint_start
         )
         self.reset()
@@ -117,7 +117,7 @@ class PersonSearch:
         """Forgets all candidates and searches at once."""
         self.times = AttemptSchedule(self._params)
         self._likely_m: list[Floats] = []
-        self._by_keypoints.reset()
+        self.by_keypoints.reset()
         self._motion.reset()
         self._last: tuple[Floats, int] | None = None
         # of the newest pictures that were searched
@@ -203,18 +203,18 @@ class PersonSearch:
                     (self._floor,),
                     p,
                 )
-                if not self._is_likely(fit) or not self._is_in_reach(fit, t_ns):
+                if not self._is_likely(fit) or not self.is_in_reach(fit, t_ns):
                     continue
                 person = self._as_person(fit, candidate)
                 if person is not None:
                     likely.append((person, candidate))
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
-            found = yield from self._by_keypoints.look(factors, information, self._hull)
-            if found is None or not self._is_in_reach(found.fit, t_ns):
+            found = yield from self.by_keypoints.look(factors, information, self._hull)
+            if found is None or not self.is_in_reach(found.fit, t_ns):
                 return None
             return _from_keypoints(found, self._views.present)
-        self._by_keypoints.reset()
+        self.by_keypoints.reset()
         fit, candidate = max(likely, key=lambda one: self._worth(one[0], t_ns))
         again = any(np.linalg.norm(fit.state.root_m - one) < p.same_place_m for one in last)
         if fit.explained < p.accept_explained and not again:
@@ -226,7 +226,7 @@ class PersonSearch:
         p = self._params
         self._update_foreground()
         if then.by_keypoints is not None:
-            found = self._by_keypoints.now(then.by_keypoints, p.walked_m, self._hull)
+            found = self.by_keypoints.now(then.by_keypoints, p.walked_m, self._hull)
             return None if found is None else _from_keypoints(found, self._views.present)
         away_m, now = min(
             (
@@ -283,7 +283,7 @@ class PersonSearch:
         elsewhere = self._params.elsewhere_per_m * away_m / (1.0 + ago_s)
         return fit.explained - self._params.farther_per_m * self._away_m(fit) - elsewhere
 
-    def _is_in_reach(self, fit: Fit, t_ns: int) -> bool:
+    def is_in_reach(self, fit: Fit, t_ns: int) -> bool:
         """False for somebody where the person who was lost a moment ago cannot have walked."""
         away_m, ago_s = self._from_last(fit, t_ns)
         return away_m <= self._params.same_place_m + self._params.walks_m_s * ago_s

@@ -27,6 +27,7 @@ from mocapd.tracking.cues.keypoints.keypoint_consensus import agreed_keypoints
 from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
 from mocapd.tracking.effort import OptionalWork
 from mocapd.tracking.initialisers.person_search import PersonSearch
+from mocapd.tracking.initialisers.room_scan import RoomScan
 from mocapd.tracking.pictures import Pictures
 from mocapd.tracking.ticks import Ticks
 from mocapd.tracking.track_state import BodyShapeEstimate, TrackState
@@ -64,6 +65,9 @@ class ClothesCue:
         self._search = PersonSearch(
             solver.silhouettes, solver.terms.floor, solver.terms.joints, solver.cameras, rig.cameras, p, now_ns,
         )  # fmt: skip
+        self._scan = RoomScan(
+            solver.silhouettes, solver.terms.joints, solver.cameras, rig.cameras, self._search.by_keypoints, p.room_scan,
+        )  # fmt: skip
         self.reset()
 
     @property
@@ -84,6 +88,7 @@ class ClothesCue:
         """Forget background and look."""
         self._solver.reset()
         self._search.reset()
+        self._scan.reset()
         self._delayed.reset()
         self._ticks, self._legs, self.legs_rest = Ticks(1, 1, 1), LegSchedule(), False
         self._is_late = False
@@ -231,11 +236,17 @@ class ClothesCue:
     # --- from nothing ---
 
     def search(self, wearer: BodyShapeEstimate, t_ns: int) -> ClothesEstimate | None:
-        """Searches for a person in the foreground."""
-        found = self._search.look(wearer.factors, wearer.information, t_ns)
-        if found is None:
+        """Searches for a person in the foreground; between such searches for one without it."""
+        searches = self._search.times.is_due(t_ns)
+        found = (self._search if searches else self._scan).look(
+            wearer.factors, wearer.information, t_ns
+        )
+        if found is None or not self._search.is_in_reach(found[0], t_ns):
             return None
+        self._scan.reset()
         fit, names = found
+        if not searches:  # the room was learned with this person
+            self.cameras.forget_background(fit.state)
         self.cameras.mark_body(fit.state)
         self.cameras.remove_ghosts()
         self.cameras.distrust_background()

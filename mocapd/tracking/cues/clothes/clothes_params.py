@@ -111,6 +111,25 @@ class KeypointStartParams:
 
 
 @dataclass(frozen=True, slots=True)
+class RoomScanParams:
+    """Where and how often the network looks for somebody without a background."""
+
+    step_m: float = 0.6  # between places: it sees people half a metre beside the middle of its crop
+    nearest_m: float = 1.2  # from a camera
+    farthest_m: float = 5.0
+    middle: float = 0.55  # height of the crop's middle [statures]
+    margin: float = 0.05  # of a picture: places closer to its edge are not looked at
+    looks: int = 2  # at somebody in a frame set, each about the pose of the one before
+    sets: int = 6  # frame sets in a row that look at somebody
+    least_joints: int = 10
+    # spread of the keypoints [m]: of people half a metre beside the place mostly less, of other places from 0.2
+    hopeless_m: float = 0.15
+    spread_m: float = 0.1  # of the pose that is found: of people to 0.1, of bookshelves from 0.115
+    pause_s: float = 2.0  # after all places, twice as long after each round
+    longest_pause_s: float = 30.0
+
+
+@dataclass(frozen=True, slots=True)
 class MotionMonitorParams:
     """When motion in the foreground counts as an undetected person."""
 
@@ -139,6 +158,7 @@ class ClothesParams:
     background: BackgroundParams = field(default_factory=BackgroundParams)
     appearance: AppearanceParams = field(default_factory=AppearanceParams)
     start: StartParams = field(default_factory=StartParams)
+    room_scan: RoomScanParams = field(default_factory=RoomScanParams)
     hull_start: HullStartParams = field(default_factory=HullStartParams)
     keypoint_start: KeypointStartParams = field(default_factory=KeypointStartParams)
     motion_monitor: MotionMonitorParams = field(default_factory=MotionMonitorParams)

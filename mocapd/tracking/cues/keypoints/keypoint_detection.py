@@ -88,15 +88,17 @@ class KeypointDetectors:
         joints: tuple[Floats, Floats],
         cameras: CameraViews,
         index: int,
+        knows_room: bool = True,
     ) -> CameraKeypoints | None:
         """Detects the keypoints of a body in one picture; None too near to the camera, or without its picture: a search may
-        have begun with a camera that is absent now. joints: its centres (J,3) and rotations (J,4)."""
+        have begun with a camera that is absent now. joints: its centres (J,3) and rotations (J,4); knows_room: the background
+        tells the room from the person, else it is not looked at."""
         if not self._networks or index not in cameras.present:
             return None
         late_s, there_m = cameras.present[index], joints[0]
         if late_s:
             there_m, _ = fitter.joints(predict_state(fitter.model, body, late_s))
-        return self._detect(fitter, index, cameras.each[index], joints, there_m)
+        return self._detect(fitter, index, cameras.each[index], joints, there_m, knows_room)
 
     def term(
         self, model: BodyModel, rays: Iterable[JointRays | None], share: float = 1.0
@@ -112,6 +114,7 @@ class KeypointDetectors:
         view: CameraView,
         here: tuple[Floats, Floats],
         there_m: Floats,
+        knows_room: bool,
     ) -> CameraKeypoints | None:
         """here: joints (J,3) and rotations (J,4) at the frame set's instant; there_m (J,3): joints at the camera's own."""
         p, size, drawing = self._params, self._relative_size, fitter.drawings[index]
@@ -121,7 +124,7 @@ class KeypointDetectors:
         if middle[2] < _NEAREST_M:
             return None
         crop = crop_about(camera, middle, SIDE_M * size, INPUT_PX, k)
-        heatmaps = self._networks[index].detect(*_cut_out(view, crop))
+        heatmaps = self._networks[index].detect(*_cut_out(view, crop, knows_room))
         crop_px = heatmaps.at_cells * _CELL_PX + (_CELL_PX / 2 - 0.5)
         frame_px = ((crop_px - crop.corner_px) / crop.scale + 0.5) * k - 0.5
         distorted = (frame_px - camera.K[:2, 2]) / camera.K[[0, 1], [0, 1]]
@@ -147,12 +150,14 @@ class KeypointDetectors:
         return CameraKeypoints(rays, heatmaps.mask_odds, crop)
 
 
-def _cut_out(view: CameraView, crop: PersonCrop) -> tuple[Bytes, Singles, Bytes]:
-    """Crops of the picture, of the background and of its mask of learned pixels."""
+def _cut_out(view: CameraView, crop: PersonCrop, knows_room: bool) -> tuple[Bytes, Singles, Bytes]:
+    """Crops of the picture, of the background and of its mask of learned pixels, none unless it `knows_room`."""
     M, size = crop.affine, (INPUT_PX, INPUT_PX)
     room, learned_mask = view.background.empty_room()
     picture = cv2.warpAffine(view.picture, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
     background = cv2.warpAffine(room, M, size, flags=cv2.INTER_LINEAR, borderValue=_GREY)
+    if not knows_room:
+        learned_mask = np.zeros_like(learned_mask)
     is_learned = cv2.warpAffine(learned_mask, M, size, flags=cv2.INTER_NEAREST, borderValue=(0,))
     return (
         np.asarray(picture, np.uint8),

@@ -1,0 +1,171 @@
+"""Somebody who was in the pictures before the empty room was: the network alone looks for them, place by place.
+
+Before a background that shows them, nobody stands out. The network tells a person without a background, too, and from half a
+metre beside them. So it looks at one place of the floor in a frame set, first in one picture; what it takes for the person in
+most of them stands in for silhouettes. Who passes the tests of the keypoint initialiser in two of the next frame sets is a
+person.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mocapd.body.skeleton import INDEX
+from mocapd.clock import nanoseconds
+from mocapd.fit.fit_result import Fit
+from mocapd.fit.motion_state import MotionState
+from mocapd.fit.solver import Fitter
+from mocapd.fit.terms.joint_term import JointTerm
+from mocapd.geometry.camera_model import project, to_camera
+from mocapd.tracking.cues.clothes.camera_view import paste_odds
+from mocapd.tracking.cues.clothes.camera_views import CameraViews
+from mocapd.tracking.cues.clothes.clothes_params import RoomScanParams
+from mocapd.tracking.cues.keypoints.keypoint_detection import CameraKeypoints, KeypointDetectors
+from mocapd.tracking.initialisers.keypoint_initialiser import (
+    KeypointCandidate,
+    KeypointInitialiser,
+    KeypointPose,
+    upright_about,
+)
+from mocapd.tracking.initialisers.standing_initialiser import Blob, PersonCandidate, blob_within
+from mocapd.types import Camera, Floats, Ints
+from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE
+
+_HIPS = INDEX["hips"]
+_ON_FLOOR = np.array([1.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Suspect:
+    """A body about which these cameras may show somebody, for so many more frame sets. is_confirmed: one did."""
+
+    state: MotionState
+    cameras: Sequence[int]
+    sets: int
+    is_confirmed: bool = False
+
+
+class RoomScan:
+    """Keeps which place comes next, and where somebody may be."""
+
+    def __init__(
+        self,
+        silhouettes: Fitter,
+        joints: KeypointDetectors,
+        views: CameraViews,
+        cameras: Sequence[Camera],
+        by_keypoints: KeypointInitialiser,
+        params: RoomScanParams,
+    ) -> None:
+        """silhouettes: a fitter whose body has one region; cameras: those of the views."""
+        self._silhouettes, self._joints, self._views = silhouettes, joints, views
+        self._by_keypoints, self._params = by_keypoints, params
+        self._middle_y_m = params.middle * silhouettes.model.stature_m
+        self._places_m, self._seen_by = places_in_view(cameras, self._middle_y_m, params)
+        self.reset()
+
+    def reset(self) -> None:
+        """Begins anew, at once."""
+        self._next, self._due_ns, self._pause_s = 0, 0, self._params.pause_s
+        self._suspect: _Suspect | None = None
+
+    def look(
+        self, factors: Floats, information: Floats, t_ns: int
+    ) -> tuple[Fit, tuple[str, ...]] | None:
+        """A person of this shape in the newest pictures, confirmed by two frame sets, with its cameras' names."""
+        if self._suspect is not None:
+            return self._look_again(self._suspect)
+        if t_ns < self._due_ns or not len(self._places_m):
+            return None
+        place = self._next % len(self._places_m)
+        self._next += 1
+        if place == len(self._places_m) - 1:  # nobody is here
+            self._due_ns = t_ns + nanoseconds(self._pause_s)
+            self._pause_s = min(2.0 * self._pause_s, self._params.longest_pause_s)
+        state = upright_about(self._silhouettes, self._places_m[place], factors, information)
+        cameras = [
+            i for i in np.flatnonzero(self._seen_by[place]).tolist() if i in self._views.present
+        ]
+        if len(cameras) > 1 and self._sure(self._detect(state, cameras[:1])):
+            return self._look_again(_Suspect(state, cameras, self._params.sets))
+        return None
+
+    def _look_again(self, at: "_Suspect") -> tuple[Fit, tuple[str, ...]] | None:
+        """The second time that it is a person, that one."""
+        self._suspect = None
+        state, one = self._person_near(at.state, at.cameras)
+        if one is not None and at.is_confirmed:
+            return one.fit, tuple(self._views.each[i].name for i in one.person.blobs)
+        if state is not None and at.sets > 1:
+            is_confirmed = at.is_confirmed or one is not None
+            self._suspect = _Suspect(state, at.cameras, at.sets - 1, is_confirmed)
+        return None
+
+    def _detect(self, state: MotionState, cameras: Sequence[int]) -> dict[int, CameraKeypoints]:
+        fitter, joints = self._silhouettes, self._silhouettes.joints(state)
+        found = fitter.each(
+            lambda i: self._joints.detect(fitter, state, joints, self._views, i, knows_room=False), cameras
+        )  # fmt: skip
+        return {i: one for i, one in zip(cameras, found, strict=True) if one is not None}
+
+    def _sure(self, found: Mapping[int, CameraKeypoints]) -> dict[int, CameraKeypoints]:
+        """Those of the cameras that show somebody."""
+        term = JointTerm(self._silhouettes.model, [one.rays for one in found.values()])
+        spreads_m = term.median_spreads_m(self._params.least_joints)
+        most_m = self._params.hopeless_m
+        return {i: one for (i, one), m in zip(found.items(), spreads_m, strict=True) if m <= most_m}
+
+    def _person_near(
+        self, state: MotionState, cameras: Sequence[int]
+    ) -> tuple[MotionState | None, KeypointCandidate | None]:
+        """The body about a body that most of these cameras show, at least two, and the same if it is a person."""
+        posed: KeypointPose | None = None
+        found: dict[int, CameraKeypoints] = {}
+        for _ in range(self._params.looks):
+            found = self._sure(self._detect(state, cameras))
+            if len(found) < max(2, len(cameras) // 2 + 1):
+                return None, None
+            posed = self._by_keypoints.pose([one.rays for one in found.values()], state)
+            if posed is None:
+                return None, None
+            state = posed.state
+        blobs = {i: blob for i, one in found.items() if (blob := self._blob(i, one)) is not None}
+        if posed is None or len(blobs) < len(found):
+            return None, None
+        person = PersonCandidate(state.root_m * _ON_FLOOR, blobs, 0.0)
+        one = self._by_keypoints.candidate(posed, person, False)
+        is_person = self._by_keypoints.is_person(one, self._params.spread_m)
+        return one.fit.state, one if is_person else None
+
+    def _blob(self, camera: int, found: CameraKeypoints) -> Blob | None:
+        """What the network takes for the person, as a silhouette."""
+        odds = np.zeros_like(self._views.each[camera].person_odds)
+        paste_odds(found.odds, found.crop, odds)
+        is_person = odds > 0.0
+        return blob_within(
+            np.where(is_person, BEFORE, BACKGROUND).astype(np.uint8), is_person.astype(np.uint8)
+        )
+
+
+def places_in_view(
+    cameras: Sequence[Camera], middle_y_m: float, params: RoomScanParams
+) -> tuple[Floats, Ints]:
+    """Middles (P,3) of people to look at, first what most cameras show, then what is nearest to the middle of pictures; and
+    which cameras (P,C) show each: two and more."""
+    p = params
+    eyes_m = np.array([-camera.R.T @ camera.t_m for camera in cameras])
+    low, high = eyes_m.min(axis=0) - p.farthest_m, eyes_m.max(axis=0) + p.farthest_m
+    x, z = (np.arange(low[k], high[k], p.step_m) for k in (0, 2))
+    places_m = np.stack(np.broadcast_arrays(x[:, None], middle_y_m, z), axis=-1).reshape(-1, 3)
+    shown, off = np.zeros((len(places_m), len(cameras)), bool), np.zeros(len(places_m))
+    for i, camera in enumerate(cameras):
+        z_m, size_px = to_camera(camera, places_m)[:, 2], np.asarray(camera.size_px)
+        at = project(camera, np.where(z_m[:, None] > p.nearest_m, places_m, np.nan)) / size_px
+        near = (z_m > p.nearest_m) & (z_m < p.farthest_m)
+        shown[:, i] = near & ((at > p.margin) & (at < 1.0 - p.margin)).all(axis=1)
+        off += np.where(shown[:, i], np.abs(at - 0.5).max(axis=1), 0.0)
+    count = shown.sum(axis=1)
+    kept = np.flatnonzero(count > 1)
+    order = kept[np.lexsort((off[kept] / count[kept], -count[kept]))]
+    return places_m[order], shown[order]
