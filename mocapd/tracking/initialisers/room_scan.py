@@ -1,9 +1,9 @@
 """Somebody who was in the pictures before the empty room was: the network alone looks for them, place by place.
 
-Before a background that shows them, nobody stands out. The network tells a person without a background, too, and from half a
-metre beside them. So it looks at one place of the floor in a frame set, first in one picture; what it takes for the person in
-most of them stands in for silhouettes. Who passes the tests of the keypoint initialiser in two of the next frame sets is a
-person.
+Before a background that shows them, nobody stands out: the searches of the foreground fail, and are given a second for it.
+The network tells a person without a background, too, and from half a metre beside them. So it looks at one place of the floor
+in a frame set, first in one picture; what it takes for the person in most of them stands in for silhouettes. Who passes the
+tests of the keypoint initialiser in two of the next frame sets is a person.
 """
 
 from collections.abc import Mapping, Sequence
@@ -66,8 +66,9 @@ class RoomScan:
         self.reset()
 
     def reset(self) -> None:
-        """Begins anew, at once."""
-        self._next, self._due_ns, self._pause_s = 0, 0, self._params.pause_s
+        """Begins anew."""
+        self._next, self._pause_s = 0, self._params.pause_s
+        self._due_ns: int | None = None  # from the first frame set without a person on
         self._suspect: _Suspect | None = None
 
     def look(
@@ -76,6 +77,8 @@ class RoomScan:
         """A person of this shape in the newest pictures, confirmed by two frame sets, with its cameras' names."""
         if self._suspect is not None:
             return self._look_again(self._suspect)
+        if self._due_ns is None:
+            self._due_ns = t_ns + nanoseconds(self._params.patience_s)
         if t_ns < self._due_ns or not len(self._places_m):
             return None
         place = self._next % len(self._places_m)
