@@ -3,7 +3,7 @@
 Before a background that shows them, nobody stands out: the searches of the foreground fail, and are given a second for it.
 The network tells a person without a background, too, and from half a metre beside them. So it looks at one place of the floor
 in a frame set, first in one picture; what it takes for the person in most of them stands in for silhouettes. Who passes the
-tests of the keypoint initialiser in two of the next frame sets is a person.
+tests of the keypoint initialiser in two of the next frame sets, and moves, is a person.
 """
 
 from collections.abc import Mapping, Sequence
@@ -30,7 +30,7 @@ from mocapd.tracking.initialisers.keypoint_initialiser import (
 )
 from mocapd.tracking.initialisers.standing_initialiser import Blob, PersonCandidate, blob_within
 from mocapd.types import Camera, Floats, Ints
-from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE
+from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, stands
 
 _HIPS = INDEX["hips"]
 _ON_FLOOR = np.array([1.0, 0.0, 1.0])
@@ -138,8 +138,17 @@ class RoomScan:
             return None, None
         person = PersonCandidate(state.root_m * _ON_FLOOR, blobs, 0.0)
         one = self._by_keypoints.candidate(posed, person, False)
-        is_person = self._by_keypoints.is_person(one, self._params.spread_m)
+        is_person = self._by_keypoints.is_person(one, self._params.spread_m) and self._moves(blobs)
         return one.fit.state, one if is_person else None
+
+    def _moves(self, blobs: Mapping[int, Blob]) -> bool:
+        """Whether a part of somebody differs from the background in a picture: of a poster or a dummy nothing does."""
+        for i, blob in blobs.items():
+            x0, y0, x1, y1 = blob.roi
+            here = stands(self._views.each[i].foreground[y0:y1, x0:x1]) & (blob.mask > 0)
+            if np.count_nonzero(here) >= self._params.moving_share * np.count_nonzero(blob.mask):
+                return True
+        return False
 
     def _blob(self, camera: int, found: CameraKeypoints) -> Blob | None:
         """What the network takes for the person, as a silhouette."""

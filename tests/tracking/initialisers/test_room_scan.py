@@ -45,3 +45,11 @@ def test_places_are_in_two_pictures_and_more_and_those_that_most_show_come_first
     for i, camera in enumerate(rig.cameras):
         at_px = project(camera, places_m[shown[:, i]])
         assert ((at_px > 0.0) & (at_px < camera.size_px)).all()
+
+
+@pytest.mark.kernels
+def test_a_figure_that_never_moves_is_a_part_of_the_room() -> None:
+    film = plain_film()
+    tracker = Stepping(markerless_tracker(film.known), wearer_shape(film.known))
+    tracks = [tracker.step(later(film.frames[-1], k)) for k in range(60)]
+    assert all(track.body.tracking is Tracking.LOST for track in tracks)

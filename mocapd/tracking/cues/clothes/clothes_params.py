@@ -125,6 +125,8 @@ class RoomScanParams:
     # spread of the keypoints [m]: of people half a metre beside the place mostly less, of other places from 0.2
     hopeless_m: float = 0.15
     spread_m: float = 0.1  # of the pose that is found: of people to 0.1, of bookshelves from 0.115
+    # of somebody's silhouette, in one camera, that has left the place where it was learned as background
+    moving_share: float = 0.02
     # without a person, before the first place: who walks in is found in the foreground by then, and better
     patience_s: float = 1.0
     pause_s: float = 1.0  # after all places, twice as long after each round
