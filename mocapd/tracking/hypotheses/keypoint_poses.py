@@ -50,8 +50,6 @@ class KeypointPoseParams:
     fit_iterations: int = 4  # of a fit to the pictures from there
     loose_s: float = 0.3  # the prior is as weak as a prediction over this time
     gain: float = 5.0  # cost decrease needed to accept it [disagreeing pixels]
-    denied: float = 20.0  # cost increase above which parts are not tried there again
-    denied_rest_s: float = 0.15  # for so long
     # further decrease needed for limbs that are farther away, before two cameras [disagreeing pixels/rad^2]
     farther: float = 5.0
 
@@ -152,7 +150,6 @@ class KeypointPoses:
     def reset(self) -> None:
         """See PoseHypothesis."""
         self._reversed_looks = 0
-        self._tried_from: dict[tuple[str, ...], int] = {}  # ticks, of parts that were denied
 
     def rehearse(self, now: ScoredFit, at: HypothesisContext, /) -> None:
         """See PoseHypothesis."""
@@ -172,11 +169,8 @@ class KeypointPoses:
             # what rays that cross say of a limb's place does not hang on where it was thought to be
             farther = p.farther if len(joints.rays) < LEAST_CAMERAS else 0.0
             starts = self._starts(now, at, joints, crossing)
-            if not believed:
-                starts = [one for one in starts if self._tried_from.get(one[1], 0) <= at.ticks.last]
             doubted = None if believed else joints
             others = refits(now, at, starts, p.fit_iterations, farther, doubted)
-            self._rest_denied(others, at)
             now = cheapest(now, others, p.gain)
         return now
 
@@ -189,12 +183,3 @@ class KeypointPoses:
             at.solvers.fitter, now.fit, joints, held, self._params, at.trunk_prior is not None, crossing,
             at.ticks.due(_CROSSINGS_S, TICK_S),
         )  # fmt: skip
-
-    def _rest_denied(
-        self, others: Sequence[tuple[ScoredFit, float]], at: HypothesisContext
-    ) -> None:
-        """What pictures deny clearly now, they deny a moment later, too."""
-        rest = round(self._params.denied_rest_s / TICK_S)
-        for one, gain in others:
-            if gain < -self._params.denied:
-                self._tried_from[one.changed] = at.ticks.last + rest

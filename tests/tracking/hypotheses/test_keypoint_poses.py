@@ -104,24 +104,6 @@ def test_a_limb_goes_where_it_was_seen_unless_pictures_of_that_pose_deny_it(
         assert off_m > 0.5
 
 
-def test_a_limb_that_pictures_deny_is_not_tried_there_again_for_a_moment() -> None:
-    here = with_arm(standing(0.0, 0.1), -1.3)
-    seen = seen_at(FITTER.joints(with_arm(here, 0.7))[0])
-    fit = FITTER.fit(here, drawn(here), DT_S, 2, terms=(seen,))
-    now, tried = ScoredFit(fit, drawn(here), (seen,)), []
-
-    def denying(state: MotionState) -> list[View]:
-        tried.append(state)
-        return nobody(state)
-
-    poses = KeypointPoses(PARAMS)
-    at = situation(seen, PoseEvidence(denying, lambda _, __: (seen,)))
-    looks = [(1, 1), (2, 1), (4, 1), (20, 2)]  # ticks, and how often it has been tried then
-    for tick, times in looks:
-        poses.test(now, replace(at, ticks=Ticks(tick, tick, tick)))
-        assert len(tried) == times, tick
-
-
 def test_a_limb_goes_where_it_was_seen_though_another_was_seen_where_it_is_not() -> None:
     here = with_arm(standing(0.0, 0.1), -1.3)
     true = with_arm(here, 0.7)
