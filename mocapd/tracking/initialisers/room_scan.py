@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mocapd.body.skeleton import INDEX
 from mocapd.clock import nanoseconds
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
@@ -32,7 +31,6 @@ from mocapd.tracking.initialisers.standing_initialiser import Blob, PersonCandid
 from mocapd.types import Camera, Floats, Ints
 from mocapd.vision.foreground_kernels import BACKGROUND, BEFORE, stands
 
-_HIPS = INDEX["hips"]
 _ON_FLOOR = np.array([1.0, 0.0, 1.0])
 
 
