@@ -100,10 +100,8 @@ class Fitter:
         if motion is None:
             motion = np.diag(1.0 / (self.prediction_sd**2 * max(_USUAL_HZ * dt_s, 0.5)))
         fine = p.fine_iterations if fine is None else fine
-        priors, from_one_side = (
-            self._wide_baseline_prior,
-            self.has_small_baseline(prediction, views),
-        )
+        priors = self._wide_baseline_prior
+        from_one_side = self.has_small_baseline(prediction, views)
         if from_one_side:
             priors = self._small_baseline_prior
         elif m.space.whole and views and not self.show_feet(prediction, views):
@@ -113,6 +111,7 @@ class Fitter:
         # a slice would be another kernel
         shape_information = np.ascontiguousarray(prediction.information)
         k, first_fine = 0, iterations - fine
+        may_hurry = bool(views) and not from_one_side and fine > 1
         while k < iterations:
             is_fine, body = k >= first_fine, self.shaper(state.factors)
             # proportions are a matter of a few pixels
@@ -135,9 +134,10 @@ class Fitter:
             factors = state.factors + step[n_pose:] if n_shape else state.factors
             state = MotionState(root_m, local_xyzw, state.velocity, factors, state.information)
             # where views cross, two looks at all pixels do the rest of what is that close
-            is_close = np.abs(step[:n_pose] / self.prediction_sd).max() < p.close_sds
-            hurries = bool(views) and not from_one_side and fine > 1 and is_close
-            k = first_fine if hurries and k < first_fine else k + 1
+            k += 1
+            if may_hurry and k < first_fine:
+                is_close = np.abs(step[:n_pose] / self.prediction_sd).max() < p.close_sds
+                k = first_fine if is_close else k
         counts = self._id_maps.counts(views)
         misplaced, in_depth, nearer_px = compared_depths(self.drawings, views, p)
         return Fit(

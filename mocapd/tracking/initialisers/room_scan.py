@@ -16,8 +16,7 @@ from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.terms.joint_term import JointTerm
-from mocapd.geometry.camera_model import project, to_camera
-from mocapd.tracking.cues.clothes.camera_view import paste_odds
+from mocapd.geometry.camera_model import centre, project, to_camera
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import RoomScanParams
 from mocapd.tracking.cues.keypoints.keypoint_detection import CameraKeypoints, KeypointDetectors
@@ -59,8 +58,8 @@ class RoomScan:
         """silhouettes: a fitter whose body has one region; cameras: those of the views."""
         self._silhouettes, self._joints, self._views = silhouettes, joints, views
         self._by_keypoints, self._params = by_keypoints, params
-        self._middle_y_m = params.middle * silhouettes.model.stature_m
-        self._places_m, self._seen_by = places_in_view(cameras, self._middle_y_m, params)
+        middle_y_m = params.middle * silhouettes.model.stature_m
+        self._places_m, self._seen_by = places_in_view(cameras, middle_y_m, params)
         self.reset()
 
     def reset(self) -> None:
@@ -150,9 +149,7 @@ class RoomScan:
 
     def _blob(self, camera: int, found: CameraKeypoints) -> Blob | None:
         """What the network takes for the person, as a silhouette."""
-        odds = np.zeros_like(self._views.each[camera].person_odds)
-        paste_odds(found.odds, found.crop, odds)
-        is_person = odds > 0.0
+        is_person = self._views.each[camera].person_in(found.odds, found.crop)
         return blob_within(
             np.where(is_person, BEFORE, BACKGROUND).astype(np.uint8), is_person.astype(np.uint8)
         )
@@ -164,7 +161,7 @@ def places_in_view(
     """Middles (P,3) of people to look at, first what most cameras show, then what is nearest to the middle of pictures; and
     which cameras (P,C) show each: two and more."""
     p = params
-    eyes_m = np.array([-camera.R.T @ camera.t_m for camera in cameras])
+    eyes_m = np.array([centre(camera) for camera in cameras])
     low, high = eyes_m.min(axis=0) - p.farthest_m, eyes_m.max(axis=0) + p.farthest_m
     x, z = (np.arange(low[k], high[k], p.step_m) for k in (0, 2))
     places_m = np.stack(np.broadcast_arrays(x[:, None], middle_y_m, z), axis=-1).reshape(-1, 3)

@@ -84,14 +84,19 @@ class CameraView:
         """Stores the network's log-odds (96,96) of the person in a crop of the picture. is_new: it looked at this picture,
         not at one before."""
         self.has_new_odds, self._newest_odds = is_new, (odds, crop)
-        paste_odds(odds, crop, self.person_odds)
+        _paste(odds, crop, self.person_odds)
 
     def person_by_network(self) -> NDArray[np.bool_]:
         """(h,w): what the network took for the tracked person when it looked last, at most a few pictures ago."""
-        odds = np.zeros_like(self.person_odds)
-        if self._newest_odds is not None:
-            paste_odds(*self._newest_odds, odds)
-        return odds > 0.0
+        if self._newest_odds is None:
+            return np.zeros(self.person_odds.shape, bool)
+        return self.person_in(*self._newest_odds)
+
+    def person_in(self, odds: Singles, crop: PersonCrop) -> NDArray[np.bool_]:
+        """(h,w): where log-odds (96,96) of a crop of the picture say person."""
+        everywhere = np.zeros_like(self.person_odds)
+        _paste(odds, crop, everywhere)
+        return everywhere > 0.0
 
     def learn_background(self, agrees: bool, ticks: int = 1) -> None:
         """Updates the background outside the marked body. agrees: the body fits the picture, so pixels without a background
@@ -120,7 +125,7 @@ class CameraView:
         return float(edges[_outline(self.drawn)].mean()), float(edges[off].mean())
 
 
-def paste_odds(odds: Singles, crop: PersonCrop, out: Singles) -> None:
+def _paste(odds: Singles, crop: PersonCrop, out: Singles) -> None:
     """Log-odds (96,96) of a crop as those of the picture (h,w), 0 outside."""
     h, w = out.shape
     cv2.warpAffine(
