@@ -175,10 +175,15 @@ def leaves(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any
             yield prefix + name, value
 
 
-def unknown_key(path: str, name: str, keys: Mapping[str, Any], where: str) -> ConfigError:
-    """The error of an unknown key, with the most similar valid one."""
-    near = difflib.get_close_matches(name[:_LONGEST_SHOWN], keys, n=1, cutoff=0.5)
-    fix = f"did you mean {near[0]!r}?" if near else "`mocapd check-config` lists every key"
+def unknown_key(
+    path: str, name: str, keys: Mapping[str, Any], where: str, prefix: str = ""
+) -> ConfigError:
+    """The error of an unknown key, with the most similar valid one. prefix: what all of them begin with, which makes none
+    similar."""
+    short = name.removeprefix(prefix)[:_LONGEST_SHOWN]
+    known = [key.removeprefix(prefix) for key in keys]
+    near = difflib.get_close_matches(short, known, n=1, cutoff=0.5)
+    fix = f"did you mean {prefix + near[0]!r}?" if near else "`mocapd check-config` lists every key"
     return ConfigError(f"unknown key {path[:_LONGEST_SHOWN]!r}", where, fix)
 
 

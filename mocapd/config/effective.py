@@ -145,7 +145,7 @@ def _from_env(env: Mapping[str, str], keys: Mapping[str, Key]) -> Values:
         if name in removed:
             raise _unknown_key_error(removed[name], keys, f"environment {name}")
         if name not in by_name:
-            raise unknown_key(name, name, by_name, "environment")
+            raise unknown_key(name, name, by_name, "environment", ENV_PREFIX)
         values[by_name[name].path] = _from_text(by_name[name], env[name], f"environment {name}")
     return values
 

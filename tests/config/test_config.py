@@ -214,6 +214,9 @@ def test_an_unknown_variable_is_an_error_with_the_nearest_name() -> None:
         load_config(env={"MOCAPD_ZENOH_PROT": "1"}, candidates=())
     assert "MOCAPD_ZENOH_PROT" in caught.value.what
     assert "MOCAPD_ZENOH_PORT" in caught.value.fix
+    with pytest.raises(ConfigError) as caught:
+        load_config(env={"MOCAPD_FOO": "1"}, candidates=())
+    assert "MOCAPD_" not in caught.value.fix  # no key is like it but for the beginning of all
 
 
 def test_a_wrong_variable_names_the_variable() -> None:

@@ -98,26 +98,26 @@ class PersonSearch:
         joints: KeypointDetectors,
         views: CameraViews,
         cameras: Sequence[Camera],
+        by_keypoints: KeypointInitialiser,
         params: ClothesParams,
         now_ns: Callable[[], int],
     ) -> None:
-        """silhouettes: a fitter whose body has one region; cameras: those of the views; now_ns: see `Resources`."""
+        """silhouettes: a fitter whose body has one region; cameras: those of the views; by_keypoints: where silhouettes tell
+        nobody; now_ns: see `Resources`."""
         self._silhouettes, self._floor, self._views = silhouettes, floor, views
         self._cameras, self._params, self._clock_ns = cameras, params.start, now_ns
         self._joints, self._least_joints = joints, params.keypoint_start.least_joints
         self._hull_params = params.hull_start
         self._scales = [view.image_scale for view in views.each]
         self._motion = MotionMonitor(params.motion_monitor)
-        self.by_keypoints = KeypointInitialiser(
-            silhouettes, floor, joints, views, cameras, params.start, params.keypoint_start
-        )
+        self._by_keypoints = by_keypoints
         self.reset()
 
     def reset(self) -> None:
         """Forgets all candidates and searches at once."""
         self.times = AttemptSchedule(self._params)
         self._likely_m: list[Floats] = []
-        self.by_keypoints.reset()
+        self._by_keypoints.reset()
         self._motion.reset()
         self._last: tuple[Floats, int] | None = None
         # of the newest pictures that were searched
@@ -210,11 +210,11 @@ class PersonSearch:
                     likely.append((person, candidate))
         last, self._likely_m = self._likely_m, [fit.state.root_m for fit, _ in likely]
         if not likely:
-            found = yield from self.by_keypoints.look(factors, information, self._hull)
+            found = yield from self._by_keypoints.look(factors, information, self._hull)
             if found is None or not self.is_in_reach(found.fit, t_ns):
                 return None
             return _from_keypoints(found, self._views.present)
-        self.by_keypoints.reset()
+        self._by_keypoints.reset()
         fit, candidate = max(likely, key=lambda one: self._worth(one[0], t_ns))
         again = any(np.linalg.norm(fit.state.root_m - one) < p.same_place_m for one in last)
         if fit.explained < p.accept_explained and not again:
@@ -226,7 +226,7 @@ class PersonSearch:
         p = self._params
         self._update_foreground()
         if then.by_keypoints is not None:
-            found = self.by_keypoints.now(then.by_keypoints, p.walked_m, self._hull)
+            found = self._by_keypoints.now(then.by_keypoints, p.walked_m, self._hull)
             return None if found is None else _from_keypoints(found, self._views.present)
         away_m, now = min(
             (

@@ -94,12 +94,15 @@ class RoomScan:
     def _look_again(self, at: "_Suspect") -> tuple[Fit, tuple[str, ...]] | None:
         """The second time that it is a person, that one."""
         self._suspect = None
-        state, one = self._person_near(at.state, at.cameras)
-        if one is not None and at.is_confirmed:
+        one = self._body_near(at.state, at.cameras)
+        if one is None:
+            return None
+        is_person = self._by_keypoints.is_person(one, self._params.spread_m) and self._moves(one)
+        if is_person and at.is_confirmed:
             return one.fit, tuple(self._views.each[i].name for i in one.person.blobs)
-        if state is not None and at.sets > 1:
-            is_confirmed = at.is_confirmed or one is not None
-            self._suspect = _Suspect(state, at.cameras, at.sets - 1, is_confirmed)
+        if at.sets > 1:
+            is_confirmed = at.is_confirmed or is_person
+            self._suspect = _Suspect(one.fit.state, at.cameras, at.sets - 1, is_confirmed)
         return None
 
     def _detect(self, state: MotionState, cameras: Sequence[int]) -> dict[int, CameraKeypoints]:
@@ -116,31 +119,27 @@ class RoomScan:
         most_m = self._params.hopeless_m
         return {i: one for (i, one), m in zip(found.items(), spreads_m, strict=True) if m <= most_m}
 
-    def _person_near(
-        self, state: MotionState, cameras: Sequence[int]
-    ) -> tuple[MotionState | None, KeypointCandidate | None]:
-        """The body about a body that most of these cameras show, at least two, and the same if it is a person."""
+    def _body_near(self, state: MotionState, cameras: Sequence[int]) -> KeypointCandidate | None:
+        """The body about a body that most of these cameras show, at least two."""
         posed: KeypointPose | None = None
         found: dict[int, CameraKeypoints] = {}
         for _ in range(self._params.looks):
             found = self._sure(self._detect(state, cameras))
             if len(found) < max(2, len(cameras) // 2 + 1):
-                return None, None
+                return None
             posed = self._by_keypoints.pose([one.rays for one in found.values()], state)
             if posed is None:
-                return None, None
+                return None
             state = posed.state
         blobs = {i: blob for i, one in found.items() if (blob := self._blob(i, one)) is not None}
         if posed is None or len(blobs) < len(found):
-            return None, None
+            return None
         person = PersonCandidate(state.root_m * _ON_FLOOR, blobs, 0.0)
-        one = self._by_keypoints.candidate(posed, person, False)
-        is_person = self._by_keypoints.is_person(one, self._params.spread_m) and self._moves(blobs)
-        return one.fit.state, one if is_person else None
+        return self._by_keypoints.candidate(posed, person, False)
 
-    def _moves(self, blobs: Mapping[int, Blob]) -> bool:
+    def _moves(self, one: KeypointCandidate) -> bool:
         """Whether a part of somebody differs from the background in a picture: of a poster or a dummy nothing does."""
-        for i, blob in blobs.items():
+        for i, blob in one.person.blobs.items():
             x0, y0, x1, y1 = blob.roi
             here = stands(self._views.each[i].foreground[y0:y1, x0:x1]) & (blob.mask > 0)
             if np.count_nonzero(here) >= self._params.moving_share * np.count_nonzero(blob.mask):

@@ -19,6 +19,7 @@ from mocapd.geometry import rotations
 from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.clothes.regions import silhouette_labels
 from mocapd.tracking.initialisers import person_search
+from mocapd.tracking.initialisers.keypoint_initialiser import KeypointInitialiser
 from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.types import Floats
 from mocapd.vision.foreground_kernels import BEFORE
@@ -83,9 +84,11 @@ def search_among(people: Sequence[MotionState], keypoints: Keypoints) -> PersonS
         remove_ghosts=nothing,
     )  # fmt: skip
     detectors: Any = keypoints
-    return PersonSearch(
-        FITTER, FloorTerm(BODY), detectors, shown, CAMERAS, ClothesParams(), lambda: 0
+    floor, p = FloorTerm(BODY), ClothesParams()
+    by_keypoints = KeypointInitialiser(
+        FITTER, floor, detectors, shown, CAMERAS, p.start, p.keypoint_start
     )
+    return PersonSearch(FITTER, floor, detectors, shown, CAMERAS, by_keypoints, p, lambda: 0)
 
 
 def first_pose(search: PersonSearch, state: MotionState, t_ns: int = 0) -> MotionState | None:

@@ -26,6 +26,7 @@ from mocapd.tracking.cues.keypoints.delayed_keypoints import DelayedKeypoints
 from mocapd.tracking.cues.keypoints.keypoint_consensus import agreed_keypoints
 from mocapd.tracking.cues.keypoints.keypoint_detection import no_detection
 from mocapd.tracking.effort import OptionalWork
+from mocapd.tracking.initialisers.keypoint_initialiser import KeypointInitialiser
 from mocapd.tracking.initialisers.person_search import PersonSearch
 from mocapd.tracking.initialisers.room_scan import RoomScan
 from mocapd.tracking.pictures import Pictures
@@ -62,12 +63,16 @@ class ClothesCue:
         self._solver = solver = ClothesSolver(rig, stature_m, p, each)
         self.cameras, self.model = solver.cameras, solver.model
         self._delayed = DelayedKeypoints(solver.terms.joints)
+        body, terms, cameras = solver.silhouettes, solver.terms, rig.cameras
+        by_keypoints = KeypointInitialiser(
+            body, terms.floor, terms.joints, solver.cameras, cameras, p.start, p.keypoint_start
+        )
         self._search = PersonSearch(
-            solver.silhouettes, solver.terms.floor, solver.terms.joints, solver.cameras, rig.cameras, p, now_ns,
-        )  # fmt: skip
+            body, terms.floor, terms.joints, solver.cameras, cameras, by_keypoints, p, now_ns
+        )
         self._scan = RoomScan(
-            solver.silhouettes, solver.terms.joints, solver.cameras, rig.cameras, self._search.by_keypoints, p.room_scan,
-        )  # fmt: skip
+            body, terms.joints, solver.cameras, cameras, by_keypoints, p.room_scan
+        )
         self.reset()
 
     @property
