@@ -1,9 +1,10 @@
 """Somebody who was in the pictures before the empty room was: the network alone looks for them, place by place.
 
-Before a background that shows them, nobody stands out: the searches of the foreground fail, and are given a second for it.
-The network tells a person without a background, too, and from half a metre beside them. So it looks at one place of the floor
-in a frame set, first in one picture; what it takes for the person in most of them stands in for silhouettes. Who passes the
-tests of the keypoint initialiser in two of the next frame sets, and moves, is a person.
+Before a background that shows them, nobody stands out: the searches of the foreground fail. The network tells a person
+without a background, too, and from half a metre beside them. So it looks at some places of the floor in a frame set, first in
+one picture; what it takes for the person in most of them stands in for silhouettes. Who passes the tests of the keypoint
+initialiser in two of the next frame sets, and moves, is a person. Who walks in later is better found in the foreground, which
+is given a second for it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -63,8 +64,14 @@ class RoomScan:
         self.reset()
 
     def reset(self) -> None:
-        """Begins anew."""
+        """Begins anew, as nobody has been looked for."""
+        self.rest()
+        self._patience_s = self._params.first_patience_s
+
+    def rest(self) -> None:
+        """Somebody was found."""
         self._next, self._pause_s = 0, self._params.pause_s
+        self._patience_s = self._params.patience_s
         self._due_ns: int | None = None  # from the first frame set without a person on
         self._suspect: _Suspect | None = None
 
@@ -75,21 +82,43 @@ class RoomScan:
         if self._suspect is not None:
             return self._look_again(self._suspect)
         if self._due_ns is None:
-            self._due_ns = t_ns + nanoseconds(self._params.patience_s)
+            self._due_ns = t_ns + nanoseconds(self._patience_s)
         if t_ns < self._due_ns or not len(self._places_m):
             return None
-        place = self._next % len(self._places_m)
-        self._next += 1
-        if place == len(self._places_m) - 1:  # nobody is here
-            self._due_ns = t_ns + nanoseconds(self._pause_s)
+        places = range(self._next, min(self._next + self._params.places, len(self._places_m)))
+        self._next = places.stop
+        if places.stop == len(self._places_m):  # nobody is here
+            self._next, self._due_ns = 0, t_ns + nanoseconds(self._pause_s)
             self._pause_s = min(2.0 * self._pause_s, self._params.longest_pause_s)
-        state = upright_about(self._silhouettes, self._places_m[place], factors, information)
-        cameras = [
-            i for i in np.flatnonzero(self._seen_by[place]).tolist() if i in self._views.present
-        ]
-        if len(cameras) > 1 and self._sure(self._detect(state, cameras[:1])):
-            return self._look_again(_Suspect(state, cameras, self._params.sets))
-        return None
+        suspect = self._suspect_among(places, factors, information)
+        return None if suspect is None else self._look_again(suspect)
+
+    def _suspect_among(
+        self, places: Sequence[int], factors: Floats, information: Floats
+    ) -> "_Suspect | None":
+        """At that of the places where a picture shows somebody best; None if none does, of places that two pictures show."""
+        suspects: dict[int, _Suspect] = {}
+        shares: dict[int, list[int]] = {}  # by camera, as each has one network
+        for place in places:
+            cameras = [
+                i for i in np.flatnonzero(self._seen_by[place]).tolist() if i in self._views.present
+            ]
+            if len(cameras) > 1:
+                middle_m = self._places_m[place]
+                state = upright_about(self._silhouettes, middle_m, factors, information)
+                suspects[place] = _Suspect(state, cameras, self._params.sets)
+                shares.setdefault(cameras[place % len(cameras)], []).append(place)
+
+        def look(camera: int) -> list[tuple[float, int]]:
+            return [
+                (spread_m, place)
+                for place in shares[camera]
+                for spread_m in self._spreads_m(self._detect(suspects[place].state, [camera]))
+            ]
+
+        looked = [one for share in self._silhouettes.each(look, shares) for one in share]
+        spread_m, place = min(looked, default=(np.inf, 0))
+        return suspects[place] if spread_m <= self._params.hopeless_m else None
 
     def _look_again(self, at: "_Suspect") -> tuple[Fit, tuple[str, ...]] | None:
         """The second time that it is a person, that one."""
@@ -97,7 +126,11 @@ class RoomScan:
         one = self._body_near(at.state, at.cameras)
         if one is None:
             return None
-        is_person = self._by_keypoints.is_person(one, self._params.spread_m) and self._moves(one)
+        is_person = (
+            self._by_keypoints.is_person(one, self._params.spread_m)
+            and self._is_within(one)
+            and self._moves(one)
+        )
         if is_person and at.is_confirmed:
             return one.fit, tuple(self._views.each[i].name for i in one.person.blobs)
         if at.sets > 1:
@@ -114,10 +147,13 @@ class RoomScan:
 
     def _sure(self, found: Mapping[int, CameraKeypoints]) -> dict[int, CameraKeypoints]:
         """Those of the cameras that show somebody."""
-        term = JointTerm(self._silhouettes.model, [one.rays for one in found.values()])
-        spreads_m = term.median_spreads_m(self._params.least_joints)
-        most_m = self._params.hopeless_m
+        spreads_m, most_m = self._spreads_m(found), self._params.hopeless_m
         return {i: one for (i, one), m in zip(found.items(), spreads_m, strict=True) if m <= most_m}
+
+    def _spreads_m(self, found: Mapping[int, CameraKeypoints]) -> Sequence[float]:
+        """By how much each camera's keypoints spread, see `JointTerm.median_spreads_m`."""
+        term = JointTerm(self._silhouettes.model, [one.rays for one in found.values()])
+        return term.median_spreads_m(self._params.least_joints)
 
     def _body_near(self, state: MotionState, cameras: Sequence[int]) -> KeypointCandidate | None:
         """The body about a body that most of these cameras show, at least two."""
@@ -136,6 +172,14 @@ class RoomScan:
             return None
         person = PersonCandidate(state.root_m * _ON_FLOOR, blobs, 0.0)
         return self._by_keypoints.candidate(posed, person, False)
+
+    def _is_within(self, one: KeypointCandidate) -> bool:
+        """Whether no picture's side cuts somebody off: who walks in is better found in the foreground, a moment later."""
+        for i, blob in one.person.blobs.items():
+            (x0, _, x1, _), width_px = blob.roi, self._views.each[i].foreground.shape[1]
+            if x0 == 0 or x1 >= width_px - 1:
+                return False
+        return True
 
     def _moves(self, one: KeypointCandidate) -> bool:
         """Whether a part of somebody differs from the background in a picture: of a poster or a dummy nothing does."""

@@ -29,7 +29,7 @@ def test_somebody_who_is_there_from_the_first_picture_on_is_found() -> None:
     tracker = Stepping(markerless_tracker(film.known), wearer_shape(film.known))
     tracks = [tracker.step(later(one, k)) for k, one in enumerate(film.frames[N_EMPTY:])]
     live = [i for i, track in enumerate(tracks) if track.body.tracking is Tracking.LIVE]
-    assert live[0] < 35
+    assert live[0] < 20
     joints_m = tracks[-1].body.joints_m
     assert joints_m is not None
     assert np.median(np.linalg.norm(joints_m - film.joints_m[-1], axis=1)) < 0.08

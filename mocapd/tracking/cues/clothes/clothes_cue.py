@@ -248,7 +248,7 @@ class ClothesCue:
         )
         if found is None or not self._search.is_in_reach(found[0], t_ns):
             return None
-        self._scan.reset()
+        self._scan.rest()
         fit, names = found
         if not searches:  # the room was learned with this person
             self.cameras.forget_background(fit.state)

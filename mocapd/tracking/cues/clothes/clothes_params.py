@@ -127,8 +127,10 @@ class RoomScanParams:
     spread_m: float = 0.1  # of the pose that is found: of people to 0.1, of bookshelves from 0.115
     # of somebody's silhouette, in one camera, that has left the place where it was learned as background
     moving_share: float = 0.02
+    places: int = 4  # in a frame set
     # without a person, before the first place: who walks in is found in the foreground by then, and better
     patience_s: float = 1.0
+    first_patience_s: float = 0.3  # since the room was learned: who is there already does not walk in, and has moved by then
     pause_s: float = 1.0  # after all places, twice as long after each round
     longest_pause_s: float = 30.0
 
