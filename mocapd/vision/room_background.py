@@ -155,11 +155,14 @@ class RoomBackground:
         self._looks = self._params.first_ticks
         self._forget_earlier()
 
-    def forget_body(self, picture: Bytes, body: Bytes) -> None:
-        """Forget the background where `body` (h,w) is not 0 and the picture (h,w,3) looks like it: the model
-        learned the body of a person at rest."""
+    def looks_like(self, picture: Bytes) -> NDArray[np.bool_]:
+        """(h,w): where a picture (h,w,3) looks like the background."""
         off = np.abs(picture - self.mean).max(axis=-1)
-        self.age[(body > 0) & (off <= self._params.tolerance)] = 0
+        return np.asarray(off <= self._params.tolerance)
+
+    def forget(self, where: NDArray[np.bool_]) -> None:
+        """Forget the background there (h,w)."""
+        self.age[where] = 0
         self._forget_earlier()
 
     def remove_ghosts(self, picture: Bytes, before: Bytes, body: Bytes, arms: Bytes) -> None:

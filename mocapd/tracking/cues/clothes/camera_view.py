@@ -47,9 +47,11 @@ class CameraView:
         self.appearance = Appearance(params.appearance)
         # the background, if learned from a recording with a person in it
         self.may_hold_body = False
-        self.body_margin, self.close_margin = (
-            np.ones((2 * px + 1,) * 2, np.uint8) for px in (params.beside_px, params.close_px)
+        self.body_margin, self._moved_margin, self.close_margin = (
+            np.ones((2 * px + 1,) * 2, np.uint8)
+            for px in (params.beside_px, params.moved_px, params.close_px)
         )
+        self._stood = params.stood
 
     def reset(self) -> None:
         """Forget background and appearance."""
@@ -97,6 +99,14 @@ class CameraView:
         everywhere = np.zeros_like(self.person_odds)
         _paste(odds, crop, everywhere)
         return everywhere > 0.0
+
+    def forget_person(self) -> None:
+        """Clears the background under the marked body: with a margin where it stood when the background was learned, as what
+        differs from it there may be another part of it; elsewhere what looks like it."""
+        there = self.background.looks_like(self.picture) & (self.drawn > 0)
+        if np.count_nonzero(there) > self._stood * np.count_nonzero(self.drawn):
+            there = np.asarray(cv2.dilate(self.drawn, self._moved_margin) > 0)
+        self.background.forget(there)
 
     def learn_background(self, agrees: bool, ticks: int = 1) -> None:
         """Updates the background outside the marked body. agrees: the body fits the picture, so pixels without a background

@@ -98,7 +98,8 @@ class CameraViews:
     def _distrust_background(self, i: int) -> None:
         camera = self.each[i]
         if camera.may_hold_body:
-            camera.background.forget_body(camera.picture, camera.drawn)
+            background = camera.background
+            background.forget(background.looks_like(camera.picture) & (camera.drawn > 0))
             camera.may_hold_body = False
 
     def forget_background(self, state: MotionState) -> None:
@@ -106,9 +107,8 @@ class CameraViews:
 
         def forget(i: int) -> None:
             self._mark(i, state)
-            camera = self.each[i]
-            camera.background.forget_body(camera.picture, camera.drawn)
-            camera.update_foreground(everywhere=False)
+            self.each[i].forget_person()
+            self.each[i].update_foreground(everywhere=False)
 
         self._each(forget, self.present)
 

@@ -183,6 +183,9 @@ class ClothesParams:
     # others up to 0.4, of those who pass close to a lens from 0.6
     covered_share: float = 0.5
     beside_px: int = 15  # about the body, that the background does not learn
+    moved_px: int = 7  # by which somebody may have moved since the room was learned with them
+    # of a body that looks like the room: who stood there when it was learned 0.2 to 0.97, who walked in to 0.18
+    stood: float = 0.2
     close_px: int = 3  # the same of pixels that have no background yet
     uncovered_s: float = 10 / 30  # between two searches for ghosts
     # interval at which the background learns the foreground, too, while no person is tracked
