@@ -100,10 +100,14 @@ class CameraView:
         _paste(odds, crop, everywhere)
         return everywhere > 0.0
 
+    def learned_body(self) -> NDArray[np.bool_]:
+        """(h,w): where the marked body looks like the background, as one that was learned with it does."""
+        return self.background.looks_like(self.picture) & (self.drawn > 0)
+
     def forget_person(self) -> None:
         """Clears the background under the marked body: with a margin where it stood when the background was learned, as what
         differs from it there may be another part of it; elsewhere what looks like it."""
-        there = self.background.looks_like(self.picture) & (self.drawn > 0)
+        there = self.learned_body()
         if np.count_nonzero(there) > self._stood * np.count_nonzero(self.drawn):
             there = np.asarray(cv2.dilate(self.drawn, self._moved_margin) > 0)
         self.background.forget(there)

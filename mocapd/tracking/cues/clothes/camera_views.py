@@ -98,8 +98,7 @@ class CameraViews:
     def _distrust_background(self, i: int) -> None:
         camera = self.each[i]
         if camera.may_hold_body:
-            background = camera.background
-            background.forget(background.looks_like(camera.picture) & (camera.drawn > 0))
+            camera.background.forget(camera.learned_body())
             camera.may_hold_body = False
 
     def forget_background(self, state: MotionState) -> None:
