@@ -7,7 +7,8 @@ import pwd
 import stat
 from pathlib import Path
 
-from mocapd.errors import PermissionDeniedError
+from mocapd.boundary.files import is_folder
+from mocapd.errors import CannotCreateError, PermissionDeniedError
 
 _OTHERS = stat.S_IRWXG | stat.S_IRWXO
 
@@ -59,6 +60,27 @@ def require_own_folder(path: Path) -> None:
                 str(path),
                 "take a folder of your own",
             )
+
+
+def require_writable(path: Path, setting: str) -> None:
+    """Checks that this user can make files in the folder, or the folder itself; makes neither.
+
+    setting: the one that names it. Raises CannotCreateError.
+    """
+    there = nearest_existing(path)
+    if not is_folder(there):
+        raise CannotCreateError(
+            f"{there} is no folder", str(path), f"move it away, or set {setting} to another"
+        )
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise CannotCreateError(
+            "cannot be written to", str(path), f"chown or chmod it, or set {setting} to another"
+        )
+
+
+def nearest_existing(path: Path) -> Path:
+    """The folder or what is there in its place, else its nearest existing parent."""
+    return next(part for part in (path, *path.parents) if os.path.lexists(part))
 
 
 def _others_may_write(state: os.stat_result) -> bool:

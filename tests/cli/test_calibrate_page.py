@@ -200,6 +200,17 @@ def test_what_cannot_be_is_refused(env: dict[str, str], words: tuple[str, ...], 
     assert_refused(mocapd_here(env, "calibrate", "--no-browser", *words), says)
 
 
+def test_a_setup_that_could_not_be_saved_is_refused_before_it_begins(
+    env: dict[str, str], tmp_path: Path
+) -> None:
+    (tmp_path / "file").touch()
+    for words in (("--demo",), ("--step", "body")):
+        outcome = mocapd_here(
+            env, "calibrate", "--no-browser", *words, "--state-dir", tmp_path / "file"
+        )
+        assert_refused(outcome, "is no folder")
+
+
 def test_a_camera_that_is_not_there_is_refused(env: dict[str, str]) -> None:
     """In a process of its own, since others begin to make the pose database beside it."""
     outcome = mocapd(env, "calibrate", "--no-browser", "--camera", "cam0=nowhere.mp4")
@@ -207,7 +218,7 @@ def test_a_camera_that_is_not_there_is_refused(env: dict[str, str]) -> None:
 
 
 def assert_refused(outcome: Outcome, says: str) -> None:
-    assert outcome.code in (2, 66, 78)
+    assert outcome.code in (2, 66, 73, 78)
     assert says in outcome.err
     assert len(outcome.err.splitlines()) == 1
 

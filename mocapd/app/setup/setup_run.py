@@ -45,6 +45,7 @@ def calibrate_page(options: PageOptions, effective: "Effective") -> int:
     set_up_logs(config.log_level)
     prepare_libraries(config.cache_dir)
 
+    from mocapd.boundary.folders import require_writable
     from mocapd.config.runtime_folder import runtime_folder
     from mocapd.control.target_process import other_name_error, select_targets
     from mocapd.web.runtime_file import SETUP, Place, begin_setup, running
@@ -63,6 +64,8 @@ def calibrate_page(options: PageOptions, effective: "Effective") -> int:
         return 0
     if options.demo and not options.own_place:
         config = replace(config, state_dir=config.state_dir / "demo")
+    if step != "check":  # which saves nothing
+        require_writable(config.state_dir, "state_dir")
     place = Place(folder, config.state_dir, config.instance, findable=not options.demo)
     from mocapd.app.daemon.cache_warmup import database_in_background
     from mocapd.app.daemon.main_loop import Signals, end_despite_work
