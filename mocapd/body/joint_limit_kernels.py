@@ -9,12 +9,15 @@ from mocapd.kernels.decorator import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+LITTLE_SWING_RAD, MUCH_SWING_RAD = np.radians(30.0), np.radians(65.0)
 
 
 class JointLimits(NamedTuple):
     """Limits of the G rotation groups of a pose space; axis -1: free (the root).
 
     lower_rad, upper_rad (G,3): about x y z of the parent bone, twist at `axis`, swing elsewhere.
+    hanging_rad (G,2): least and greatest twist while the bone swings by less than LITTLE_SWING_RAD; from there to
+    MUCH_SWING_RAD the twist's limits become those of lower_rad and upper_rad, linearly.
     joint (G,): the joint that a group's angle is read from; share (J,): its share of the angle.
     """
 
@@ -23,6 +26,7 @@ class JointLimits(NamedTuple):
     share: Array  # (J,)
     lower_rad: Array  # (G,3)
     upper_rad: Array  # (G,3)
+    hanging_rad: Array  # (G,2)
 
 
 @kernel
@@ -40,7 +44,7 @@ def limit_residuals(
     in the parent's frame of which each joint of the group takes its share. A group with axis -1 has no
     limits.
     """
-    axis_of_group, joint_of_group, share_of_joint, lower, upper = limits
+    axis_of_group, joint_of_group, share_of_joint, lower, upper, hanging = limits
     d = np.empty(4)
     c = np.empty(3)
     dc = np.empty((3, 3))
@@ -93,15 +97,28 @@ def limit_residuals(
             dfk = df * (qb * d[1] + qe * d[2])
             dc[b, axis] = dfk * p / n + f * (dp - p * dn / n) / n
             dc[e, axis] = dfk * r / n + f * (dr - r * dn / n) / n
+        swing = np.sqrt(c[b] * c[b] + c[e] * c[e])  # [rad]
         for i in range(3):
             # angles of the whole group; a joint's share of the step undoes the division
-            over = c[i] / share - upper[g, i]
-            under = c[i] / share - lower[g, i]
+            most, least = upper[g, i], lower[g, i]
+            over_swing, under_swing = 0.0, 0.0  # derivatives of the twist's limits
+            if i == a and swing / share < MUCH_SWING_RAD:
+                range_rad = MUCH_SWING_RAD - LITTLE_SWING_RAD
+                lifted = max(swing / share - LITTLE_SWING_RAD, 0.0) / range_rad
+                if lifted > 0.0:
+                    over_swing = (most - hanging[g, 1]) / range_rad
+                    under_swing = (least - hanging[g, 0]) / range_rad
+                most = hanging[g, 1] + lifted * (most - hanging[g, 1])
+                least = hanging[g, 0] + lifted * (least - hanging[g, 0])
+            over = c[i] / share - most
+            under = c[i] / share - least
             if over > 0.0:
-                residual[g, i] = over
+                residual[g, i], by_swing = over, over_swing
             elif under < 0.0:
-                residual[g, i] = under
+                residual[g, i], by_swing = under, under_swing
             else:
                 continue
             for k in range(3):
                 derivative[g, i, k] = dc[i, k]
+                if by_swing != 0.0:
+                    derivative[g, i, k] -= by_swing * (c[b] * dc[b, k] + c[e] * dc[e, k]) / swing

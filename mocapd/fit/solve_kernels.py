@@ -120,7 +120,7 @@ def gauss_newton_step(
     wrong depth, and grow with it.
     """
     rest_local, rest_information, limits, limit_information, tilt_information = priors
-    _, joint_of_group, share_of_joint, _, _ = limits
+    _, joint_of_group, share_of_joint, _, _, _ = limits
     n_pose = motion_information.shape[0]
     P = b.shape[0]
     A = H.copy()

@@ -15,6 +15,7 @@ from mocapd.tracking.hypotheses.base import (
     refits,
 )
 from mocapd.tracking.hypotheses.keypoint_poses import KeypointPoses
+from mocapd.tracking.hypotheses.twisted_legs import TwistedLegs
 
 _ENDS = [limb.end for limb in LIMBS.values()]
 _LEAST_VIEWS = 3  # fewer did not gain by it (docs/decisions/one-body.md)
@@ -95,6 +96,7 @@ class HypothesisTests:
         self._always: dict[str, PoseHypothesis] = {
             "moved_limbs": MovedLimbs(),
             "keypoint_poses": KeypointPoses(params.keypoint_poses),
+            "twisted_legs": TwistedLegs(),
         }
         self._searched: dict[str, PoseHypothesis] = {
             "arm_poses": ArmPoses(),

@@ -6,20 +6,16 @@ import numpy as np
 import pytest
 
 from mocapd.body.skeleton import INDEX
-from mocapd.fit.fit_params import FitParams, LegSearchParams, LimbSearchParams
-from mocapd.fit.limbs.arm_search import ArmSearch
-from mocapd.fit.limbs.leg_search import LegSearch
+from mocapd.fit.fit_params import FitParams
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
-from mocapd.tracking.cues.clothes.region_merge import RegionSolvers
 from mocapd.tracking.cues.clothes.regions import region_labels
-from mocapd.tracking.hypotheses.base import HypothesisContext, PoseEvidence, ScoredFit
+from mocapd.tracking.hypotheses.base import ScoredFit
 from mocapd.tracking.hypotheses.hypothesis_tests import MovedLimbs
-from mocapd.tracking.ticks import Ticks
 from tests.geometry.rigs import ring
-from tests.tracking.hypotheses.standing_body import BODY, drawn, standing
+from tests.tracking.hypotheses.standing_body import BODY, context, drawn, standing
 
 pytestmark = pytest.mark.kernels
 
@@ -53,16 +49,10 @@ class Situation:
         near = self.fitter.fit(with_arm(0.3), drawn(self.true, self.fitter), DT_S, 1)
         cost = self.fitter.fit(near.state, stale, DT_S, 1).cost
         now = ScoredFit(replace(near, cost=cost), stale, ())
-        solvers = RegionSolvers(
-            self.fitter,
-            ArmSearch(self.fitter, LimbSearchParams()),
-            LegSearch(self.fitter, LegSearchParams()),
-        )
         prior = np.zeros((BODY.n_pose, BODY.n_pose)) if trunk_prior else None
-        evidence = PoseEvidence(self._classify, lambda _, __: ())
-        at = HypothesisContext(
-            solvers, DT_S, Ticks(1, 1, 1), (), evidence, prior, self.predicted
-        )  # fmt: skip
+        at = replace(
+            context(self.fitter, self._classify), trunk_prior=prior, predicted=self.predicted
+        )
         return now, MovedLimbs().test(now, at)
 
     def _classify(self, about: MotionState) -> list[View]:
