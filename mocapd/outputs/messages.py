@@ -82,14 +82,14 @@ class Health(CountingMessage, frozen=True):
     effort: Annotated[
         str,
         Meta(
-            description="how much of its work the tracker does: `full`, `saving` or `least` on a machine that is too slow"
+            description="optional work of the tracker: `full`; less on a machine that is too slow: `saving` or `least`"
         ),
     ] = "full"
     slowness: Annotated[
         str,
         Meta(
-            description="one line for people: that a large share of the frame sets is skipped, why, and what helps; empty "
-            "while tracking keeps up. Games say `tracking is slow` while it is not empty"
+            description="warning for people that the daemon skips many frame sets, with the cause and the remedy, in one "
+            "line; empty while tracking keeps up. While it is not empty, games show `tracking is slow`"
         ),
     ] = ""
 
@@ -115,13 +115,13 @@ class CameraStatus(CountingMessage, frozen=True):
     size_px: Annotated[tuple[int, int], Meta(description="width, height of its pictures [px]")]
     rate_hz: Annotated[float, Meta(description="pictures per second, lately [Hz]")]
     frames: Annotated[Count, Meta(description="pictures taken since the start")]
-    lost_frames: Annotated[Count, Meta(description="pictures that the source lost or tore")]
-    reopened: Annotated[Count, Meta(description="how often it had to be opened again")]
+    lost_frames: Annotated[Count, Meta(description="pictures that were lost or arrived damaged")]
+    reopened: Annotated[Count, Meta(description="how often the daemon had to reopen the camera")]
     mounting: Annotated[
         str,
         Meta(
-            description="`steady`; `bumped`: turned since the start, calibrate the room again; `swapped`: shows what "
-            "another camera should; or `unknown`"
+            description="`steady`; `bumped`: the camera was turned since the start, calibrate the room again; `swapped`: the "
+            "camera shows the view of another camera; or `unknown`"
         ),
     ] = "unknown"
     schema: Annotated[str, Meta(description=f"always `{CAMERA_STATUS}`")] = CAMERA_STATUS
@@ -181,7 +181,8 @@ class RestSkeleton(msgspec.Struct, frozen=True):
     offsets_m: Annotated[
         tuple[Vector, ...],
         Meta(
-            description="of each bone: from its parent's joint in the T-pose, world axes; root: from the floor below [m]"
+            description="vector from the parent's joint to each bone's joint in the T-pose, in world axes; for the root, "
+            "from the floor below it [m]"
         ),
     ]
     schema: Annotated[str, Meta(description=f"always `{REST_SKELETON}`")] = REST_SKELETON
@@ -198,7 +199,8 @@ class Facing(msgspec.Struct, frozen=True):
     yaw_deg: Annotated[
         float,
         Meta(
-            description="turn about +Y that takes +Z to where the person looked, positive to its left, -180..180 [deg]"
+            description="rotation about +Y from +Z to the person's forward direction, positive to the person's left, "
+            "-180..180 [deg]"
         ),
     ]
     at_unix_ns: Annotated[int, Meta(description="time of the recentre, Unix time [ns]")]

@@ -81,8 +81,8 @@ class SkeletonFrame(msgspec.Struct, frozen=True):
     tracker: Annotated[
         str,
         Meta(
-            description="what carried the body: `shirt`, `clothes`, `shirt+clothes`, or a tracker without cues (`canned`); "
-            "of nobody the tracker's name"
+            description="cues that determined the pose: `shirt`, `clothes` or `shirt+clothes`; the tracker's name if the "
+            "tracker has no cues (`canned`) or tracks nobody"
         ),
     ]
     tracking: Annotated[str, Meta(description="`live`, `coasting` (predicted) or `lost`")]
@@ -97,14 +97,15 @@ class SkeletonFrame(msgspec.Struct, frozen=True):
     smoothing_lag_ns: Annotated[
         Nanoseconds,
         Meta(
-            description="how much the tracker's filter and smoothing delay a person who moves, about: the pose is as old as "
-            "that more [ns]"
+            description="approximate delay of a moving person's pose by the tracker's filter and the smoothing, in addition "
+            "to the frame's age [ns]"
         ),
     ] = 0
     predicted_ns: Annotated[
         Nanoseconds,
         Meta(
-            description="of a predicted pose: how far ahead of what was seen; the capture times are those it is for [ns]"
+            description="time between the last measured pose and a predicted one, whose capture times are the predicted "
+            "times; 0 for a measured pose [ns]"
         ),
     ] = 0
 

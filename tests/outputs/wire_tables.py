@@ -38,7 +38,7 @@ def type_words(kind: Any) -> str:
 
 
 def struct_table(struct: type[msgspec.Struct]) -> str:
-    rows = ["| field | type | what |", "|---|---|---|"]
+    rows = ["| field | type | meaning |", "|---|---|---|"]
     plain = get_type_hints(struct)
     for name, hint in get_type_hints(struct, include_extras=True).items():
         rows.append(
@@ -48,7 +48,7 @@ def struct_table(struct: type[msgspec.Struct]) -> str:
 
 
 def osc_table(arguments: tuple[tuple[str, str, str], ...]) -> str:
-    rows = ["| argument | type | what |", "|---|---|---|"]
+    rows = ["| argument | type | meaning |", "|---|---|---|"]
     rows += [f"| {name} | `{kind}` | {what} |" for name, kind, what in arguments]
     return "\n".join(rows) + "\n"
 
