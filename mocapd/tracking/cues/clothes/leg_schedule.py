@@ -3,8 +3,8 @@ their look is learned.
 
 Half of what both cues cost together is legs and head, which mostly stand. While they hardly move they go on as predicted in
 every second frame set: in 33 ms, what is slower than 0.45 m/s strays by less than its fit does. Not before cameras side by
-side, whose toes hang on which points are measured in which frame set (docs/decisions/one-body.md). Legs that move rest for
-one frame set where it waits already, so that the tracker catches up instead of missing the next one.
+side, whose toes hang on which points are measured in which frame set (docs/decisions/tracking-speed.md). Legs that move
+rest for one frame set where it waits already, so that the tracker catches up instead of missing the next one.
 
 Cameras take turns with the dear work, so that no frame set takes long.
 """

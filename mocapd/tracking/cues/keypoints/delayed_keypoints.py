@@ -7,7 +7,7 @@ keypoints are used again in the others: a body that has them in every second one
 the frame rate.
 
 A keypoint is moved as its joint is predicted to move, so what it says is by how far the fit before was off; the person's mask
-is moved as the body's middle. docs/decisions/one-body.md has figures.
+is moved as the body's middle. docs/decisions/tracking-speed.md has figures.
 """
 
 from collections.abc import Callable, Collection
