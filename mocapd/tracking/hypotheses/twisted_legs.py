@@ -17,9 +17,13 @@ from mocapd.types import Floats
 
 _EVERY_S = 0.1
 _ITERATIONS = 4
-# of the foot from the pelvis's forward direction [rad]; of 95 000 recorded legs that hang, 0.1 % are beyond 49 and 80 degrees
+# of the foot from the pelvis's forward direction [rad]; 0.1 % of recorded legs that hang are beyond 49 and 80 degrees
 _INWARDS_RAD, _OUTWARDS_RAD = np.radians(60.0), np.radians(90.0)
 _MOST_COST = 10.0  # of the straight foot, beyond the twisted one's [disagreeing pixels]
+_BONES = np.array(
+    [[INDEX[side + bone] for side in SIDES] for bone in ("UpperLeg", "LowerLeg", "Foot")]
+)
+_OUTWARDS = np.array([1.0, -1.0])  # along x, of SIDES
 _HANGING_RAD = 0.6  # swing of the thigh and flexion of the knee below which a leg hangs
 
 
@@ -39,33 +43,31 @@ class TwistedLegs:
         state = now.fit.state
         starts = [
             (replace(state, local_xyzw=with_foot_ahead(state.local_xyzw, side)), (f"{side}_leg",))
-            for side in SIDES
-            if is_twisted(state.local_xyzw, side)
+            for side in twisted_sides(state.local_xyzw)
         ]
         return cheapest(now, refits(now, at, starts, _ITERATIONS), -_MOST_COST)
 
 
-def is_twisted(local_xyzw: Floats, side: str) -> bool:
-    """True if the leg of local_xyzw (J,4), relative to the parents, hangs and its foot points where no foot can."""
-    thigh, shank, foot = local_xyzw[_bones(side)]
-    swing = swing_twist(thigh, Y)
-    if max(np.hypot(swing[X], swing[Z]), abs(swing_twist(shank, Y)[X])) > _HANGING_RAD:
-        return False
-    from_foot = rotations.multiply(rotations.multiply(thigh, shank), foot)
-    x, _, z = rotations.rotate(from_foot, np.array([0.0, 0.0, 1.0]))
-    outwards_rad = np.arctan2(x if side == "left" else -x, z)
-    return bool(outwards_rad < -_INWARDS_RAD or outwards_rad > _OUTWARDS_RAD)
+def twisted_sides(local_xyzw: Floats) -> list[str]:
+    """The sides of legs that hang and whose foot points where no foot can; local_xyzw (J,4): relative to the parents."""
+    thighs, shanks, feet = local_xyzw[_BONES]
+    from_foot = rotations.multiply(rotations.multiply(thighs, shanks), feet)
+    ahead = rotations.rotate(from_foot, np.array([0.0, 0.0, 1.0]))
+    outwards_rad = np.arctan2(_OUTWARDS * ahead[:, 0], ahead[:, 2])
+    beyond = (outwards_rad < -_INWARDS_RAD) | (outwards_rad > _OUTWARDS_RAD)
+    return [SIDES[i] for i in np.flatnonzero(beyond) if _hangs(thighs[i], shanks[i])]
+
+
+def _hangs(thigh_xyzw: Floats, shank_xyzw: Floats) -> bool:
+    swing_rad, knee_rad = swing_twist(thigh_xyzw, Y), swing_twist(shank_xyzw, Y)
+    return bool(max(np.hypot(swing_rad[X], swing_rad[Z]), abs(knee_rad[X])) < _HANGING_RAD)
 
 
 def with_foot_ahead(local_xyzw: Floats, side: str) -> Floats:
     """The pose (J,4) with no bone of this leg turned about the leg's own length."""
     out = local_xyzw.copy()
-    for bone, axis in zip(_bones(side), (Y, Y, Z), strict=True):
+    for bone, axis in zip(_BONES[:, SIDES.index(side)], (Y, Y, Z), strict=True):
         angles = swing_twist(local_xyzw[bone], axis)
         angles[Y] = 0.0
         out[bone] = from_swing_twist(angles, axis)
     return out
-
-
-def _bones(side: str) -> list[int]:
-    return [INDEX[side + bone] for bone in ("UpperLeg", "LowerLeg", "Foot")]

@@ -10,7 +10,7 @@ from mocapd.fit.motion_state import MotionState
 from mocapd.fit.view import View
 from mocapd.geometry import rotations
 from mocapd.tracking.hypotheses.base import ScoredFit
-from mocapd.tracking.hypotheses.twisted_legs import TwistedLegs, is_twisted
+from mocapd.tracking.hypotheses.twisted_legs import TwistedLegs, twisted_sides
 from tests.tracking.hypotheses.standing_body import FITTER, context, drawn, standing
 
 pytestmark = pytest.mark.kernels
@@ -62,12 +62,11 @@ def test_a_foot_that_points_where_a_foot_can_costs_no_second_fit() -> None:
 
 def test_either_leg_is_twisted_the_same_way_and_a_bent_one_is_not_judged() -> None:
     local = with_left_leg_turned(2.0).local_xyzw
-    assert is_twisted(local, "left")
-    assert not is_twisted(local, "right")
+    assert twisted_sides(local) == ["left"]
     mirrored = local.copy()
     for bone in ("UpperLeg", "LowerLeg", "Foot"):
         mirrored[INDEX["right" + bone]] = local[INDEX["left" + bone]] * [1.0, -1.0, -1.0, 1.0]
-    assert is_twisted(mirrored, "right")
+    assert twisted_sides(mirrored) == ["left", "right"]
     bent = local.copy()
     bent[INDEX["leftLowerLeg"]] = rotations.exp(np.array([1.2, 0.0, 0.0]))
-    assert not is_twisted(bent, "left")
+    assert not twisted_sides(bent)
