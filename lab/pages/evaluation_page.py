@@ -14,26 +14,30 @@ ROC_PLOT = "images/eval_roc.png"
 _AGAINST_PAPER = """
 ## Against the paper's method and its baseline
 
-As in Fig. 9 of Wang, Paris and Popović (2011). `full`: this tracker. `paper`: the method as published,
-steps 1 to 5 with its constants. `baseline`: the same without the pose prior of step 3 and without
-adaptive white balance. The paper measured 4.0 cm for its method and 5.1 cm for the baseline, over the
-vertices of a mesh and on recordings of its own; here it is the joints.
+The comparison follows Fig. 9 of Wang, Paris and Popović (2011):
+
+- `full`: this tracker.
+- `paper`: the published method, steps 1 to 5 with its constants.
+- `baseline`: the published method without the pose prior of step 3 and without adaptive white balance.
+
+The paper measured 4.0 cm for its method and 5.1 cm for the baseline, on recordings of its own. The paper's errors are
+of the vertices of a mesh. The errors in the tables below are of joints.
 """
 
 _AGAINST_OTHERS = """
-## Against other ways
+## Against other methods
 
-`full`: this tracker; beside it what the registry sets there: as published, or without a step.
+The column `full` is this tracker. Each other column is a published tracker, or this tracker without one of its steps.
 """
 
 _COMPARISON = """
 {rms}
 
-An error is that of the frames tracked, which are these:
+The RMS error is of the tracked frames alone. The coverage is the share of tracked frames:
 
 {coverage}
 
-The median tells a tracker that is a little off everywhere from one that is right but for some frames:
+The median error distinguishes small errors in all frames from large errors in a few frames:
 
 {median}
 """
@@ -41,28 +45,31 @@ The median tells a tracker that is a little off everywhere from one that is righ
 _SHOULDER = """
 ### The shoulder over time
 
-As in the paper's Fig. 10: the interior angle at the left shoulder (neck, shoulder, elbow), as it was,
-as the full method tells it, and as the baseline does. A gap: not tracked.
+The plot follows Fig. 10 of the paper. It shows the interior angle at the left shoulder (neck, shoulder, elbow). The
+three curves are the ground truth, the full method and the baseline. A gap means: not tracked.
 
 ![The shoulder's angle over time]({plot})
 """
 
 _ROC = """
-### Telling the colours apart
+### Classification of the shirt's colours
 
-As in the paper's Fig. 6, over the labelled frames of these captures: the Gaussians of step 1 alone,
-against step 3 with the pose as prior, while their thresholds vary. Both see the same pixels (pictures
-averaged down as for the tracker, the region around the body) with the same white balance, that of
-step 5 in the frame before; the prior is drawn from the pose that the full method tracked, not from the
-truth. *Correct*: share of the shirt that got its own colour. *False positives*: share of the region
-that got a colour which is not its own. Pixels on the border of two patches are not counted.
+The table follows Fig. 6 of the paper, over the labelled frames of these captures. It compares the Gaussians of step 1
+alone with step 3, which has the pose as prior. The thresholds of both steps vary.
+
+- Both steps classify the same pixels: the region around the body, in pictures averaged down as for the tracker.
+- Both steps use the white balance of step 5 in the previous frame.
+- The prior is rendered from the pose that the full method tracked, not from the ground truth.
+- *Correct* (table columns and vertical axis): share of the shirt's pixels that got their own colour.
+- *False positives*: share of the region's pixels that got a wrong colour.
+- Pixels on the border of two patches do not count.
 
 {table}
 
 ![Correct classification over false positives]({plot})
 
-The dots are what the full method's own classifier gave while it ran: besides the prior it follows
-each colour as the camera sees it, and it knows the background.
+The dots show the full method's own classifier during tracking. This classifier uses the prior, adapts to the colours of
+each camera, and knows the background.
 """
 
 

@@ -13,19 +13,19 @@ from mocapd.evaluate.tables import number, table
 # Key in JSON, title, digits, value.
 COLUMNS: tuple[tuple[str, str, int, Callable[[CaptureResult], float | None]], ...] = (
     ("coverage_percent", "coverage [%]", 1, lambda r: 100.0 * r.score.coverage),
-    ("ghost_frames", "ghosts", 0, lambda r: float(r.score.ghost_frames)),
+    ("ghost_frames", "ghost frames", 0, lambda r: float(r.score.ghost_frames)),
     ("rms_cm", "RMS [cm]", 2, lambda r: r.score.rms_cm),
     ("median_cm", "median [cm]", 2, lambda r: r.score.median_cm),
     ("p95_cm", "p95 [cm]", 2, lambda r: r.score.p95_cm),
-    ("jitter_ratio", "jitter x", 1, lambda r: r.score.jitter_ratio),
-    ("step_error_p99_cm", "step p99 [cm]", 1, lambda r: r.score.step_error_p99_cm),
-    ("step_error_max_cm", "step max [cm]", 0, lambda r: r.score.step_error_max_cm),
-    ("confident_percent", "believed [%]", 0, lambda r: 100.0 * r.score.confident_share),
-    ("confident_rms_cm", "its RMS [cm]", 1, lambda r: r.score.confident_rms_cm),
-    ("doubtful_rms_cm", "other RMS [cm]", 1, lambda r: r.score.doubtful_rms_cm),
+    ("jitter_ratio", "jitter ratio", 1, lambda r: r.score.jitter_ratio),
+    ("step_error_p99_cm", "step error p99 [cm]", 1, lambda r: r.score.step_error_p99_cm),
+    ("step_error_max_cm", "step error max [cm]", 0, lambda r: r.score.step_error_max_cm),
+    ("confident_percent", "confident [%]", 0, lambda r: 100.0 * r.score.confident_share),
+    ("confident_rms_cm", "confident RMS [cm]", 1, lambda r: r.score.confident_rms_cm),
+    ("doubtful_rms_cm", "doubtful RMS [cm]", 1, lambda r: r.score.doubtful_rms_cm),
     ("joint_angle_deg", "angle [°]", 1, lambda r: r.score.joint_angle_deg),
-    ("recovery_frames", "back after [frames]", 0, lambda r: r.recovery_frames),
-    ("step_ms", "step [ms]", 1, lambda r: r.step_ms),
+    ("recovery_frames", "recovery [frames]", 0, lambda r: r.recovery_frames),
+    ("step_ms", "time per frame set [ms]", 1, lambda r: r.step_ms),
 )
 
 
@@ -77,7 +77,9 @@ def reliability_table(of: Reliability) -> str:
         ]
         rows.append(row)
     near = f"within {NEAR_CM:g} cm [%]"
-    return table(["confidence", "joints [%]", "RMS [cm]", near, "and above [%]"], rows)
+    return table(
+        ["confidence", "joints [%]", "RMS [cm]", near, "this and higher confidence [%]"], rows
+    )
 
 
 def groups_by_cameras(results: Sequence[CaptureResult]) -> list[tuple[str, list[CaptureResult]]]:

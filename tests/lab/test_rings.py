@@ -45,8 +45,9 @@ def test_the_page_has_means_by_the_number_of_cameras_and_what_one_camera_less_co
     assert "| mean of 1 with 3 cameras |    1.000 |     6.0 |" in sessions
     assert "25.0 %" in sessions
     without = [replace(SCORE, left_out=f"cam{k}", rms_cm=4.0 + k) for k in range(3)]
-    assert "| mean without one, as a multiple |          |    1.25 |" in page.left_out_table(
-        [SCORE, *without]
+    assert (
+        "| mean without one camera, relative to all cameras |          |    1.25 |"
+        in page.left_out_table([SCORE, *without])
     )
 
 

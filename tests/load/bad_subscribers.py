@@ -90,18 +90,21 @@ def _heard(hearer: Child, seconds: float) -> Heard:
 def bad_subscriber_table(found: BadSubscriberFigures) -> str:
     """As Markdown."""
     lines = [
-        f"| {found.subscribers} subscribers | rate median (slowest) [Hz] | latency p50 / p99 [ms] |",
+        f"| {found.subscribers} subscribers | median rate (slowest subscriber) [Hz] | latency p50 / p99 [ms] |",
         "|---|---|---|",
     ]
     for name, heard in (
-        ("all well", found.well),
-        ("all well, once more", found.again),
-        (f"the others, beside {found.stuck} stuck and {found.killed} killed", found.beside),
+        ("no faulty subscribers", found.well),
+        ("no faulty subscribers, second measurement", found.again),
+        (f"{found.stuck} stuck and {found.killed} killed", found.beside),
     ):
         lines.append(
             f"| {name} | {heard.rate_hz:.1f} ({heard.slowest_hz:.1f}) | {heard.p50_ms:.2f} / {heard.p99_ms:.2f} |"
         )
-    for name, heard in (("change by itself", found.again), ("change beside them", found.beside)):
+    for name, heard in (
+        ("change without faulty subscribers", found.again),
+        ("change with faulty subscribers", found.beside),
+    ):
         lines.append(
             f"| {name} | {_change(heard.rate_hz, found.well.rate_hz)} |"
             f" {_change(heard.p50_ms, found.well.p50_ms)} / {_change(heard.p99_ms, found.well.p99_ms)} |"

@@ -139,16 +139,16 @@ def node_table(found: NodeFigures) -> str:
         f"| {found.nodes} camera nodes, {found.seconds:.0f} s | |",
         "|---|---|",
         f"| frame sets used | {1.0 - live.dropped:.2%} |",
-        f"| with all {found.nodes} cameras | {live.all_cameras:.2%} |",
-        f"| rate | {live.rate_hz:.1f} Hz |",
+        f"| published frames with all {found.nodes} cameras | {live.all_cameras:.2%} |",
+        f"| rate of published frames | {live.rate_hz:.1f} Hz |",
         "| latency, newest exposure to publication, median (p95) |"
         f" {live.latency_median_ms:.1f} ms ({live.latency_p95_ms:.1f}) |",
-        f"| CPU of the daemon | {live.cpu_share:.0%} of a core, {live.cpu_ms:.1f} ms a set |",
-        f"| CPU of a node | {found.node_cpu:.0%} of a core |",
+        f"| CPU of the daemon | {live.cpu_share:.0%} of a core, {live.cpu_ms:.1f} ms per frame set |",
+        f"| CPU of one node, mean | {found.node_cpu:.0%} of a core |",
     ]
     lines += [
-        f"| clock of {one.node}{f' ({one.imperfect})' if one.imperfect else ''} | off by {one.worst_ms:.2f} ms at most, told"
-        f" {one.told_ms:.2f} ms, drift {one.drift_ppm:+.1f} ppm |"
+        f"| clock of {one.node}{f' ({one.imperfect})' if one.imperfect else ''} | largest error {one.worst_ms:.2f} ms,"
+        f" estimated error {one.told_ms:.2f} ms, drift {one.drift_ppm:+.1f} ppm |"
         for one in found.clocks
     ]
     return "\n".join(lines)

@@ -88,7 +88,7 @@ def _split(names: list[str], size: int) -> list[list[str]]:
 def stream_table(rows: list[StreamFigures]) -> str:
     """As Markdown."""
     lines = [
-        "| streams | subscribers | rate median (slowest) [Hz] | missed | latency p50 / p99 [ms]"
+        "| streams | subscribers | median rate (slowest subscriber) [Hz] | missed frames | latency p50 / p99 [ms]"
         " | CPU per stream: sender / router / its subscribers [% of a core] |",
         "|---|---|---|---|---|---|",
     ]
