@@ -24,8 +24,8 @@ from mocapd.vision.room_background import BackgroundParams, RoomBackground
 from tests.real_videos.contact_sheet import draw_skeleton
 from tests.tracking.profiles import markerless_tracker
 
-CAMERAS = ("cam01", "cam02")  # neighbours before him, 2.9 m apart: what the tracker sees
-OTHERS = ("cam03", "cam04")  # behind him: what it never sees
+CAMERAS = ("cam01", "cam02")  # neighbours before him, 2.9 m apart
+OTHERS = ("cam03", "cam04")  # behind him
 STATURE_M = 1.70  # the top of his cap before the floor, by both cameras, where he stands upright
 SCALE = 3  # of the pictures looked at, smaller than the videos
 NEAR_PX = 3  # about his outline [px of the small pictures]: two centimetres
@@ -60,10 +60,13 @@ def beam_rig(folder: Path) -> Rig:
     return Rig(tuple(cameras))
 
 
-def beam_walk(folder: Path, tiles: int, every: int = 1) -> BeamWalk:
-    """He is tracked in every frame and looked at in one of `every`, with so many pictures of it."""
+def beam_walk(
+    folder: Path, tiles: int, every: int = 1, tracking: tuple[str, ...] = CAMERAS
+) -> BeamWalk:
+    """He is tracked in every frame by these cameras and looked at in one of `every`, with so many pictures of it."""
     cameras = {camera.name: camera for camera in beam_rig(folder).cameras}
-    seeing = tuple(cameras[name] for name in CAMERAS)
+    seeing = tuple(cameras[name] for name in tracking)
+    others = tuple(name for name in cameras if name not in tracking)
     tracker = markerless_tracker(Calibration(Rig(seeing), Wearer(STATURE_M)))
     shape = mean_shape(STATURE_M)
 
@@ -82,18 +85,20 @@ def beam_walk(folder: Path, tiles: int, every: int = 1) -> BeamWalk:
             if number % _ROOM_EVERY == 0 or number % every == 0 or number in pictured:
                 for name, shown in small.items():
                     shown[number] = _smaller(one.frames[name].pixels)
-            yield replace(one, frames={name: one.frames[name] for name in CAMERAS})
+            yield replace(one, frames={name: one.frames[name] for name in tracking})
 
     learn_room(tracker, seen(), n)
     assert len(times_s) == n
     rooms = {name: _room(shown, times_s) for name, shown in small.items()}
     inside: dict[int, float] = {}
     elsewhere: dict[int, float] = {}
-    rows: list[list[Bytes]] = [[] for _ in CAMERAS]
-    for number, one in enumerate(sets(CAMERAS)):
+    rows: list[list[Bytes]] = [[] for _ in tracking]
+    for number, one in enumerate(sets(tracking)):
         joints_m = tracker.step(one, shape).body.joints_m
         if joints_m is not None and number % every == 0:
-            for names, shares in ((CAMERAS, inside), (OTHERS, elsewhere)):
+            for names, shares in ((tracking, inside), (others, elsewhere)):
+                if not names:
+                    continue
                 before = [rooms[name].foreground(small[name][number]) for name in names]
                 shares[number] = share_inside([cameras[name] for name in names], joints_m, before)
         if number in pictured:
