@@ -12,7 +12,7 @@ const TITLES = {
 };
 const NO_SHIRT =
   "Two cameras or more follow you in any clothes: leave the room empty for a second when tracking begins, then stand " +
-  "upright and face them. Expect errors of 5 to 12 cm; with the shirt they are 1.0 to 3.5 cm.";
+  "upright and face them. Expect errors of 2 to 9 cm; with the shirt they are 1.0 to 3.5 cm.";
 const STATES = {
   waiting: "Your turn",
   working: "Working",
