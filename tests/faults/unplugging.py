@@ -20,6 +20,7 @@ from tests.faults.socketed_room import WEBCAMS, SocketedRoom
 ACTIONS, PAUSE_S = 1000, 0.31  # with what is waited for between them ten minutes in all
 SETTLE_EVERY = 25  # actions, after which all are put back where they belong
 SETTLED_S = 60.0  # all must take part again by then [s]
+SEEN_S = 2.5  # after which each has been seen where it belongs
 TOLD_S = 1.0  # 99 of 100 losses must be told by then [s]
 _PORTS = (*(f"1-{n}" for n in range(1, 7)), "2-1", "2-3.1")
 _NEAR_NS = 25_000_000  # of frames of one set
@@ -71,7 +72,7 @@ class Hands:
         identical = [name for name in WEBCAMS if not self._has_serial(name)]
         for name in identical:
             self._control.plug(name)
-        time.sleep(2.5)  # each has been seen where it belongs
+        time.sleep(SEEN_S)
         for name in identical:
             self._control.unplug(name)
         time.sleep(0.3)
@@ -168,6 +169,7 @@ def run(extent: Extent) -> Came:
         room = SocketedRoom(Path(folder), extent.rate_hz)
         with faulty_daemon(Path(folder), *room.words, shows=room.shows) as daemon:
             hands = Hands(room, daemon, extent.seed)
+            time.sleep(SEEN_S)  # identical webcams that were never seen cannot be told apart
             hands.settle()
             for count in range(1, actions + 1):
                 hands.act()
