@@ -21,6 +21,7 @@ from tests.real_videos.contact_sheet import write_sheet
 from tests.real_videos.signing import SigningClip, signing_clip
 
 FACES, BEAM = "images/real-faces.jpg", "images/real-beam.jpg"
+BEAM_OF_FOUR = "images/real-beam-four.jpg"
 
 _PAGE = """\
 # Real videos
@@ -51,29 +52,35 @@ This test does not track limbs, because tracking limbs needs two cameras.
 
 ## A man on a beam
 Four cameras record a man who balances on a beam (Pose2Sim, `SinglePerson`, BSD-3-Clause, copyright 2022 perfanalytics;
-calibration of the cameras by the authors). `markerless` uses the two cameras in front of him, 2.9 m apart. He never
-leaves their pictures. The tracker therefore learns the background from the whole clip (`mocapd track --room whole`).
-His stature, {stature_m:.2f} m, was measured in the pictures.
+calibration of the cameras by the authors). The two cameras in front of him are 2.9 m apart. The tracker is `markerless`.
+He never leaves the pictures. The tracker therefore learns the background from the whole clip (`mocapd track --room
+whole`). His stature, {stature_m:.2f} m, was measured in the pictures.
 
-| measured share | the two cameras in front of him (used by `markerless`) | the two cameras behind him (not used) |
-|---|---:|---:|
-| frames with the skeleton inside his outline, of {frames} | {share:.0f} % | {share_elsewhere:.0f} % |
-| tracked frames: points on the bones inside his outline, mean | {points:.1f} % | {points_elsewhere:.1f} % |
+- *Frames*: share of the {frames} frames in which the skeleton is inside his outline.
+- *Points*: mean share of the points on the bones that are inside his outline, of the frames with a skeleton.
 
-For each bone, the test projects five points into the two cameras of a column. A point is inside his outline if it lies
+| cameras that track him | cameras that show the outline | frames [%] | points [%] |
+|---|---|---:|---:|
+| the two in front of him | the same | {share:.0f} | {points:.1f} |
+| the two in front of him | the two behind him | {share_elsewhere:.0f} | {points_elsewhere:.1f} |
+| all four | all four | {share_of_four:.0f} | {points_of_four:.1f} |
+
+For each bone, the test projects five points into the cameras that show the outline. A point is inside his outline if it lies
 on the foreground of the camera's clip (`mocapd/vision/clip_background.py`), or no more than {near} px beside the
-foreground. The skeleton is inside his outline if {inside:.0f} % of the points of both cameras together are inside.
+foreground. The skeleton is inside his outline if {inside:.0f} % of the points of these cameras together are inside.
 Background that he hides in all frames counts as foreground.
 
-With all four cameras, `markerless` has a skeleton inside his outline in {share_of_four:.0f} % of the frames.
-
-With two cameras, the tracker tracks him from frame {first} of {frames} on. Before that, it needs two detections 0.2 s
-apart that agree, and then several frames.
-
-The pictures show that legs, trunk, head and left arm follow him. The tracker places his raised right arm in front of
-his chest. This position is wrong, but inside his outline.
+The tracker publishes the first pose in frame {first} with two cameras, and in frame {first_of_four} with four cameras.
+Before that, two successive frames must show the same person, and then several frames must confirm the pose.
 
 ![Both cameras at ten instants: his right in red, his left in green]({beam})
+
+With two cameras, legs, trunk, head and left arm follow him. The tracker places his raised right arm in front of his
+chest. This position is wrong, but inside his outline.
+
+![All four cameras at five instants, tracked by all four]({beam_of_four})
+
+With four cameras, both arms follow him, too.
 """
 
 
@@ -82,7 +89,6 @@ def page(
 ) -> str:
     """The page as Markdown; by_four: tracked by all cameras."""
     rows = [_row(clip.name, [clip]) for clip in clips]
-    tracked = list(walk.inside)
     return _PAGE.format(
         videos=videos,
         docs=docs,
@@ -97,8 +103,11 @@ def page(
         points_elsewhere=100.0 * np.mean(list(walk.elsewhere.values())),
         inside=100.0 * INSIDE,
         near=NEAR_PX * SCALE,
-        first=tracked[0],
+        first=next(iter(walk.inside)),
         share_of_four=100.0 * by_four.share(by_four.inside),
+        points_of_four=100.0 * np.mean(list(by_four.inside.values())),
+        first_of_four=next(iter(by_four.inside)),
+        beam_of_four=BEAM_OF_FOUR,
     )
 
 
@@ -114,10 +123,11 @@ def main(videos: Path, docs: Path) -> None:
     cascade = frontal_faces()
     clips = [signing_clip(one, cascade, 4) for one in sorted(videos.glob("intel_asl/*.mkv"))]
     walk = beam_walk(videos / "pose2sim_SinglePerson", 10)
-    by_four = beam_walk(videos / "pose2sim_SinglePerson", 0, tracking=CAMERAS + OTHERS)
+    by_four = beam_walk(videos / "pose2sim_SinglePerson", 5, tracking=CAMERAS + OTHERS)
     tiles = [[*a.tiles, *b.tiles] for a, b in zip(clips[::2], clips[1::2], strict=True)]
     write_sheet(docs / FACES, tiles)
     write_sheet(docs / BEAM, walk.tiles)
+    write_sheet(docs / BEAM_OF_FOUR, by_four.tiles)
     (docs / "real-videos.md").write_text(page(clips, walk, by_four, videos, docs), encoding="utf-8")
 
 

@@ -2,8 +2,9 @@
 
 The network runs on each foreground blob that all cameras show in one place, or on each part of the visual hull. A pose from
 its triangulated keypoints is fitted to keypoints and silhouettes. It counts as a person only if the silhouette agrees, most
-keypoints agree in every camera and the body touches the floor, in two successive searches at one place: furniture, shadows
-and screens fail these checks.
+keypoints agree in most cameras and the body touches the floor, in two successive searches at one place: furniture, shadows
+and screens fail these checks. Where no background is known, because the person always stood there, the silhouette is the
+network's.
 """
 
 from collections.abc import Generator, Mapping, Sequence
@@ -21,7 +22,7 @@ from mocapd.geometry import rotations
 from mocapd.geometry.camera_model import project, rays
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import KeypointStartParams, StartParams
-from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
+from mocapd.tracking.cues.keypoints.keypoint_detection import CameraKeypoints, KeypointDetectors
 from mocapd.tracking.initialisers.hull_candidates import HullCandidate
 from mocapd.tracking.initialisers.keypoint_pose import pose_through, triangulated_joints
 from mocapd.tracking.initialisers.standing_initialiser import (
@@ -42,9 +43,9 @@ _HIGHEST_MIDDLE_M = 1.6  # of a body that touches the floor
 class KeypointCandidate:
     """A candidate fitted to keypoints and silhouettes. shadows: the blobs include possible shadows.
 
-    spread_m: median heatmap spread of the keypoints in the worst camera, inf if a camera shows too few; off_sds2: median
-    squared distance of the body's joints from the keypoints in the worst camera [standard deviations^2]; apart_m: mean
-    distance of the body's joints from the triangulated ones; lowest_m: height of the lowest joint.
+    spread_m: median heatmap spread of the keypoints in the best camera but one, or in the only one; off_sds2: median squared
+    distance of the body's joints from the keypoints in the worst camera [standard deviations^2]; apart_m: mean distance of
+    the body's joints from the triangulated ones; lowest_m: height of the lowest joint.
     """
 
     fit: Fit
@@ -88,6 +89,11 @@ class KeypointInitialiser:
     def reset(self) -> None:
         """Forgets these places."""
         self._last_m: list[Floats] = []
+
+    @property
+    def is_half_sure(self) -> bool:
+        """True if the last search found somebody whom a second one may confirm."""
+        return bool(self._last_m)
 
     def look(
         self, factors: Floats, information: Floats, hull: Sequence[HullCandidate] | None
@@ -140,27 +146,47 @@ class KeypointInitialiser:
         information: Floats,
     ) -> KeypointCandidate | None:
         """A pose about middle_m (3,) for these blobs, of the cameras that are present now; None if the network is unsure of
-        the keypoints or sees no trunk."""
+        the keypoints in half of them, or sees no trunk."""
         fitter, posed = self._silhouettes, None
         state = upright_about(fitter, middle_m, factors, information)
+        sure: dict[int, CameraKeypoints] = {}
         for _ in range(self._params.looks):
-            detect = self._joints.detector(fitter, state, self._views)
-            posed = self.pose(fitter.each(detect, person.blobs), state)
+            found: dict[int, CameraKeypoints] = {}
+            fitter.each(self._joints.detector(fitter, state, self._views, found), person.blobs)
+            sure = self.sure(found, len(person.blobs))
+            posed = self.pose([one.rays for one in sure.values()], state)
             if posed is None:
                 return None
             state = posed.state
-        return None if posed is None else self.candidate(posed, person, shadows)
+        if posed is None:
+            return None
+        blobs = {i: self._completed(person.blobs[i], i, one) for i, one in sure.items()}
+        return self.candidate(posed, replace(person, blobs=blobs), shadows)
 
-    def pose(self, rays: Sequence[JointRays | None], about: MotionState) -> KeypointPose | None:
-        """A pose through all these keypoints, which were detected about a body; None without one camera's, if the network is
-        unsure of them, or if it sees no trunk."""
+    def spreads_m(self, found: Mapping[int, CameraKeypoints]) -> Sequence[float]:
+        """How far each camera's keypoints spread, see `JointTerm.median_spreads_m`."""
+        term = JointTerm(self._silhouettes.model, [one.rays for one in found.values()])
+        return term.median_spreads_m(self._params.least_joints)
+
+    def sure(
+        self, found: Mapping[int, CameraKeypoints], cameras: int
+    ) -> dict[int, CameraKeypoints]:
+        """The detections without blurred ones; none unless more than half of so many cameras remain."""
+        sure = {
+            i: one
+            for (i, one), spread_m in zip(found.items(), self.spreads_m(found), strict=True)
+            if spread_m <= self._params.hopeless_m
+        }
+        return sure if len(sure) > cameras // 2 else {}
+
+    def pose(self, rays: Sequence[JointRays], about: MotionState) -> KeypointPose | None:
+        """A pose through all these keypoints, which were detected about a body; None without any or if they show no
+        trunk."""
         p, fitter = self._params, self._silhouettes
         terms = self._joints.term(fitter.model, rays)
-        if not terms or len(terms[0].rays) < len(rays):
+        if not terms:
             return None
         joints = terms[0]
-        if max(joints.median_spreads_m(p.least_joints)) > p.hopeless_m:
-            return None
         places_m = triangulated_joints(joints.rays, about.root_m, p.middle_sd_m)
         posed = pose_through(fitter, places_m, about.factors, about.information)
         if posed is None:
@@ -185,11 +211,18 @@ class KeypointInitialiser:
             fit,
             person,
             shadows,
-            max(joints.median_spreads_m(self._params.least_joints)),
+            sorted(joints.median_spreads_m(self._params.least_joints))[:2][-1],
             joints.worst_off_sds2(joints_m),
             apart_m,
             float(joints_m[:, 1].min()),
         )
+
+    def _completed(self, blob: Blob, camera: int, found: CameraKeypoints) -> Blob:
+        """The blob, with what the network takes for the person where no background is known."""
+        x0, y0, x1, y1 = blob.roi
+        is_person = self._views.each[camera].person_in(found.odds, found.crop)[y0:y1, x0:x1]
+        mask = np.where(blob.has_background, blob.mask, is_person).astype(np.uint8)
+        return replace(blob, mask=mask, has_background=np.ones_like(blob.has_background))
 
     def is_person(self, one: KeypointCandidate, spread_m: float | None = None) -> bool:
         """True if keypoints and silhouettes agree on a person on the floor. spread_m: its largest, if not the usual."""

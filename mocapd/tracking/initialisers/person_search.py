@@ -15,13 +15,14 @@ from mocapd.fit.view import View
 from mocapd.geometry.camera_model import centre
 from mocapd.tracking.base import LostReason
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
-from mocapd.tracking.cues.clothes.clothes_params import ClothesParams, StartParams
+from mocapd.tracking.cues.clothes.clothes_params import ClothesParams
 from mocapd.tracking.cues.keypoints.keypoint_consensus import agreed_keypoints
 from mocapd.tracking.cues.keypoints.keypoint_detection import KeypointDetectors
 from mocapd.tracking.cues.keypoints.limbs_at_keypoints import (
     limbs_off_crossings,
     with_limbs_at_keypoints,
 )
+from mocapd.tracking.initialisers.attempt_schedule import AttemptSchedule
 from mocapd.tracking.initialisers.hull_candidates import (
     HullCandidate,
     hull_candidates,
@@ -59,34 +60,6 @@ _Likely = tuple[Fit, _SearchCandidate]
 _TURNS = 2  # of a first pose by keypoints: about, and the rest of the way
 
 
-class AttemptSchedule:
-    """When to search. After a slow piece of a search, other work gets as much time as the piece took."""
-
-    def __init__(self, params: StartParams) -> None:
-        self._pause_ns = nanoseconds(params.pause_s)
-        self._most_ns = nanoseconds(params.most_rest_s)
-        self._next_ns = 0
-        self._attempt_ns: int | None = None  # until the frame set after it has come
-
-    def on_frame_set(self, t_ns: int) -> None:
-        """Measures how long the last piece took, from the first frame set after it."""
-        if self._attempt_ns is None:
-            return
-        took_ns, self._attempt_ns = t_ns - self._attempt_ns, None
-        if took_ns > self._pause_ns:
-            self._next_ns = t_ns + min(took_ns, self._most_ns)
-
-    def is_due(self, t_ns: int) -> bool:
-        """True if this frame set should start or continue a search."""
-        return t_ns >= self._next_ns
-
-    def on_attempt(self, t_ns: int, to_the_end: bool) -> None:
-        """Records a piece done at this frame set; a pause follows the last piece of a search."""
-        self._attempt_ns = t_ns
-        if to_the_end:
-            self._next_ns = t_ns + self._pause_ns
-
-
 class PersonSearch:
     """Searches for a person; on a slow machine one search runs over several frame sets, so that capture and output
     continue. Keeps the schedule and the candidates of the last search."""
@@ -119,6 +92,7 @@ class PersonSearch:
         self._likely_m: list[Floats] = []
         self._by_keypoints.reset()
         self._motion.reset()
+        self._confirms = False  # the next search, what the last one found
         self._last: tuple[Floats, int] | None = None
         # of the newest pictures that were searched
         self._clear: dict[int, Bytes] = {}
@@ -149,7 +123,7 @@ class PersonSearch:
         if self._earlier is not None:
             earlier = self._earlier
             self.give_up()
-            self.times.on_attempt(t_ns, to_the_end=True)
+            self.times.on_attempt(t_ns, pauses=True)
             return self._found(self._as_now(*earlier))
         begins = self._under_way is None
         if self._under_way is None:
@@ -167,11 +141,14 @@ class PersonSearch:
             self.give_up()
             likeliest: _Likely | None = end.value
             if likeliest is None or (begins and self._clock_ns() < until_ns):
-                self.times.on_attempt(t_ns, to_the_end=True)
+                # the next frame set may confirm somebody; who is found at another place each time waits
+                is_half_sure = bool(self._likely_m) or self._by_keypoints.is_half_sure
+                self._confirms = likeliest is None and is_half_sure and not self._confirms
+                self.times.on_attempt(t_ns, pauses=not self._confirms)
                 return self._found(likeliest)
             self._earlier = likeliest
             return None
-        self.times.on_attempt(t_ns, to_the_end=False)
+        self.times.on_attempt(t_ns, pauses=False)
         return None
 
     def _found(self, likeliest: _Likely | None) -> Found | None:

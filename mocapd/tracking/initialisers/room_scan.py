@@ -7,7 +7,7 @@ initialiser in two of the next frame sets, and moves, is a person. Who walks in 
 is given a second for it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,6 @@ from mocapd.clock import nanoseconds
 from mocapd.fit.fit_result import Fit
 from mocapd.fit.motion_state import MotionState
 from mocapd.fit.solver import Fitter
-from mocapd.fit.terms.joint_term import JointTerm
 from mocapd.geometry.camera_model import centre, project, to_camera
 from mocapd.tracking.cues.clothes.camera_views import CameraViews
 from mocapd.tracking.cues.clothes.clothes_params import RoomScanParams
@@ -113,7 +112,9 @@ class RoomScan:
             return [
                 (spread_m, place)
                 for place in shares[camera]
-                for spread_m in self._spreads_m(self._detect(suspects[place].state, [camera]))
+                for spread_m in self._by_keypoints.spreads_m(
+                    self._detect(suspects[place].state, [camera])
+                )
             ]
 
         looked = [one for share in self._silhouettes.each(look, shares) for one in share]
@@ -145,24 +146,12 @@ class RoomScan:
         )  # fmt: skip
         return {i: one for i, one in zip(cameras, found, strict=True) if one is not None}
 
-    def _sure(self, found: Mapping[int, CameraKeypoints]) -> dict[int, CameraKeypoints]:
-        """Those of the cameras that show somebody."""
-        spreads_m, most_m = self._spreads_m(found), self._params.hopeless_m
-        return {i: one for (i, one), m in zip(found.items(), spreads_m, strict=True) if m <= most_m}
-
-    def _spreads_m(self, found: Mapping[int, CameraKeypoints]) -> Sequence[float]:
-        """By how much each camera's keypoints spread, see `JointTerm.median_spreads_m`."""
-        term = JointTerm(self._silhouettes.model, [one.rays for one in found.values()])
-        return term.median_spreads_m(self._params.least_joints)
-
     def _body_near(self, state: MotionState, cameras: Sequence[int]) -> KeypointCandidate | None:
         """The body about a body that most of these cameras show, at least two."""
         posed: KeypointPose | None = None
         found: dict[int, CameraKeypoints] = {}
         for _ in range(self._params.looks):
-            found = self._sure(self._detect(state, cameras))
-            if len(found) < max(2, len(cameras) // 2 + 1):
-                return None
+            found = self._by_keypoints.sure(self._detect(state, cameras), len(cameras))
             posed = self._by_keypoints.pose([one.rays for one in found.values()], state)
             if posed is None:
                 return None

@@ -2,7 +2,7 @@
 
 from mocapd.clock import nanoseconds
 from mocapd.tracking.cues.clothes.clothes_params import StartParams
-from mocapd.tracking.initialisers.person_search import AttemptSchedule
+from mocapd.tracking.initialisers.attempt_schedule import AttemptSchedule
 
 
 def looks(seconds: float, look_s: float) -> list[bool]:
@@ -12,7 +12,7 @@ def looks(seconds: float, look_s: float) -> list[bool]:
         times.on_frame_set(nanoseconds(t_s))
         found.append(times.is_due(nanoseconds(t_s)))
         if found[-1]:
-            times.on_attempt(nanoseconds(t_s), to_the_end=True)
+            times.on_attempt(nanoseconds(t_s), pauses=True)
         t_s += max(0.04, look_s) if found[-1] else 0.04
     return found
 
@@ -35,7 +35,7 @@ def test_a_look_under_way_goes_on_with_every_frame_set() -> None:
     for t_s in (1.0, 1.04, 1.08):
         times.on_frame_set(nanoseconds(t_s))
         assert times.is_due(nanoseconds(t_s))
-        times.on_attempt(nanoseconds(t_s), to_the_end=False)
+        times.on_attempt(nanoseconds(t_s), pauses=False)
 
 
 def test_the_first_frame_set_is_looked_at() -> None:

@@ -176,3 +176,25 @@ def test_of_two_people_the_one_is_found_again_who_was_tracked() -> None:
         found = next((pose for pose in tries if pose is not None), None)
         assert found is not None
         assert np.linalg.norm(found.root_m - tracked.root_m) < 0.2
+
+
+def test_who_may_be_a_person_is_confirmed_by_the_next_frame_set() -> None:
+    state = turned(0.7)
+    search = search_among([state], Keypoints(0.7))
+    search._params = replace(search._params, accept_explained=2.0)  # one search never does
+    assert first_pose(search, state) is None
+    assert search.times.is_due(nanoseconds(0.02))
+    assert first_pose(search, state, nanoseconds(0.02)) is not None
+
+
+def test_who_is_never_confirmed_is_not_looked_for_in_every_frame_set() -> None:
+    state = turned(0.7)
+    search = search_among([state], Keypoints(0.7))
+    search._params = replace(search._params, accept_explained=2.0, same_place_m=-1.0)
+    looked = [
+        first_pose(search, state, nanoseconds(0.02 * k))
+        for k in range(50)
+        if search.times.is_due(nanoseconds(0.02 * k))
+    ]
+    assert 5 <= len(looked) <= 12
+    assert not any(looked)

@@ -100,7 +100,7 @@ class KeypointStartParams:
     shadows_more: float = 0.08  # with what may be shadow: it lies on the floor before the feet, and draws the body there
     # see KeypointCandidate
     spread_m: float = 0.09  # of people up to 0.07, of chairs from 0.11
-    # the same, above which nothing is fitted: the first crop may be off-centre
+    # the same, above which a camera's keypoints are left out: the first crop may be off-centre
     hopeless_m: float = 0.15
     # of people up to 1.0; of lying people, which the network has not learned, to 4
     off_sds2: float = 1.3
@@ -121,7 +121,6 @@ class RoomScanParams:
     margin: float = 0.05  # of a picture: places closer to its edge are not looked at
     looks: int = 2  # at somebody in a frame set, each about the pose of the one before
     sets: int = 6  # frame sets in a row that look at somebody
-    least_joints: int = 10
     # spread of the keypoints [m]: of people half a metre beside the place mostly less, of other places from 0.2
     hopeless_m: float = 0.15
     spread_m: float = 0.1  # of the pose that is found: of people to 0.1, of bookshelves from 0.115
